@@ -1,0 +1,103 @@
+//! Good starts for a scan: (m, n, kappa) spread evenly, and the weights that fit best there.
+
+use crate::boxqp;
+use crate::brdf::{Brdf, has, slot};
+use crate::geometry::LANES;
+use crate::lm::Bounds;
+use crate::real::Real;
+use crate::residuals::{SUMS, Scan, accumulate, total};
+use crate::search::Scene;
+use crate::start;
+
+impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS, P> {
+    /// Candidate `i`: m, n and kappa spread evenly over the logarithm of their ranges, then the weights that fit best.
+    #[inline(always)]
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64) -> [R; P] {
+        let mut x = bounds.lower;
+        let u = start::even::<R, 3>(seed, i);
+        if has(TERMS, 3) {
+            let k = slot(TERMS, 3);
+            x[k] = log_between(bounds.lower[k], bounds.upper[k], u[0]);
+        }
+        if has(TERMS, 4) {
+            let k = slot(TERMS, 4);
+            x[k] = log_between(bounds.lower[k], bounds.upper[k], u[1]);
+        }
+        if has(TERMS, 5) {
+            let k = slot(TERMS, 5);
+            // A third of them without absorption, the others with kappa from 0.01.
+            let third = R::of(1.0 / 3.0);
+            x[k] = if u[2] < third {
+                bounds.lower[k]
+            } else {
+                let u = (u[2] - third) * R::of(1.5);
+                log_between(bounds.lower[k].max(R::of(1e-4)), bounds.upper[k].max(R::of(1e-4)), u)
+            };
+        }
+        self.set_weights(&mut x, bounds);
+        bounds.clamp(x)
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+    /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds; one pass.
+    #[inline(always)]
+    fn set_weights(&self, x: &mut [R; P], bounds: &Bounds<R, P>) {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let mut normal = [[[R::ZERO; SUMS]; 3]; 3];
+        let mut gradient = [[R::ZERO; SUMS]; 3];
+        let ones = [R::ONE; LANES];
+        for block in self.blocks() {
+            let columns = brdf.relative_columns(block);
+            for i in 0..3 {
+                if has(TERMS, i) {
+                    accumulate(&mut gradient[i], &columns[i], &ones);
+                    for j in 0..=i {
+                        if has(TERMS, j) {
+                            accumulate(&mut normal[i][j], &columns[i], &columns[j]);
+                        }
+                    }
+                }
+            }
+        }
+        let mut a = [[R::ZERO; 3]; 3];
+        let mut g = [R::ZERO; 3];
+        let (mut lower, mut upper) = ([R::ZERO; 3], [R::ZERO; 3]);
+        for i in 0..3 {
+            a[i][i] = R::ONE;
+            if has(TERMS, i) {
+                lower[i] = bounds.lower[slot(TERMS, i)];
+                upper[i] = bounds.upper[slot(TERMS, i)];
+                for j in 0..=i {
+                    a[i][j] = total(&normal[i][j]);
+                    a[j][i] = a[i][j];
+                }
+                a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
+                g[i] = -total(&gradient[i]);
+            }
+        }
+        // The box is seen from its lower corner.
+        for i in 0..3 {
+            for j in 0..3 {
+                g[i] += a[i][j] * lower[j];
+            }
+        }
+        let room = [upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]];
+        let step = boxqp::minimize(&a, &g, &[R::ZERO; 3], &room);
+        for i in 0..3 {
+            if has(TERMS, i) {
+                x[slot(TERMS, i)] = lower[i] + step[i];
+            }
+        }
+    }
+}
+
+/// Between two positive numbers, evenly in the logarithm.
+fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
+    if !(lower < upper) {
+        return lower;
+    }
+    let lower = lower.max(R::MIN_POSITIVE);
+    let (a, b) = (lower.ln(), upper.ln());
+    (a + (b - a) * u).exp()
+}

@@ -1,0 +1,33 @@
+//! Microfacet BRDF model, bounded Levenberg-Marquardt and global search.
+//!
+//! `no_std`, no allocation, no `unsafe`, no I/O, no clock; the same bits on every target.
+//!
+//! # Map
+//! Data flows one way, through the files in this order:
+//!
+//! | stage | type | file | paper |
+//! |---|---|---|---|
+//! | scalar type, elementary functions | [`real::Real`] | `real.rs` | |
+//! | sample -> geometry, observation -> block | [`geometry::Sample`], [`geometry::Observation`], [`geometry::Block`] | `geometry.rs` | Eq. 7, 9, 12, 13 |
+//! | F and its derivatives | `Index` | `fresnel.rs` | |
+//! | ln f and its gradient | [`brdf::Params`], [`brdf::Brdf`] | `brdf.rs` | Eq. 3-8, 11, 14 |
+//! | step within bounds | | `boxqp.rs` | |
+//! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
+//! | residuals of a scan | [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
+//! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
+//! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
+//! | search | [`search::search`], [`search::paper`] | `search.rs` | section 3 |
+//! | starts worth a fit | [`search::Scene`] | `candidate.rs` | |
+#![no_std]
+
+mod boxqp;
+pub mod brdf;
+mod candidate;
+mod fresnel;
+pub mod geometry;
+pub mod lm;
+pub mod minima;
+pub mod real;
+pub mod residuals;
+pub mod search;
+pub mod start;

@@ -1,0 +1,218 @@
+//! Bounded Levenberg-Marquardt for any small least-squares problem; knows no BRDF.
+
+use crate::boxqp;
+use crate::real::Real;
+
+/// Sum of squared residuals with its first-order model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearization<R, const P: usize> {
+    /// Sum of squared residuals r.
+    pub cost: R,
+    /// J' r.
+    pub gradient: [R; P],
+    /// J' J.
+    pub hessian: [[R; P]; P],
+}
+
+/// A least-squares problem in `P` parameters.
+pub trait Problem<R, const P: usize> {
+    /// Sum of squared residuals at `x`.
+    fn cost(&self, x: &[R; P]) -> R;
+    /// The same with J'r and J'J.
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P>;
+}
+
+/// `lower <= x <= upper` for each parameter; equal bounds hold it fixed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds<R, const P: usize> {
+    /// Least values.
+    pub lower: [R; P],
+    /// Largest values.
+    pub upper: [R; P],
+}
+
+impl<R: Real, const P: usize> Bounds<R, P> {
+    /// The nearest point within; NaN becomes the lower bound.
+    pub fn clamp(&self, x: [R; P]) -> [R; P] {
+        let mut inside = x;
+        for i in 0..P {
+            inside[i] = x[i].max(self.lower[i]).min(self.upper[i]);
+        }
+        inside
+    }
+}
+
+/// When to stop, and how carefully to begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options<R> {
+    /// See [`Stop::Cost`]; dimensionless.
+    pub cost_tolerance: R,
+    /// See [`Stop::Step`]; dimensionless.
+    pub step_tolerance: R,
+    /// See [`Stop::Passes`].
+    pub max_passes: u32,
+    /// First damping, in units of the diagonal of J'J.
+    pub damping: R,
+}
+
+impl<R: Real> Default for Options<R> {
+    fn default() -> Self {
+        Options {
+            cost_tolerance: R::EPSILON,
+            step_tolerance: R::EPSILON,
+            max_passes: 500,
+            damping: R::of(1e-3),
+        }
+    }
+}
+
+/// How a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// Converged: the linear model, without damping, promises a reduction of at most `cost_tolerance * cost`.
+    Cost,
+    /// Converged as far as rounding allows: no step longer than `step_tolerance` of each parameter lowers the cost.
+    Step,
+    /// `max_passes` evaluations were made.
+    Passes,
+    /// Cost or derivatives are not finite at the start: nothing was done.
+    NotFinite,
+}
+
+impl Stop {
+    /// True if more passes would not lower the cost.
+    pub fn converged(self) -> bool {
+        matches!(self, Stop::Cost | Stop::Step)
+    }
+}
+
+/// Where a fit is; copied, it can be continued later.
+#[derive(Clone, Copy, Debug)]
+pub struct Fit<R, const P: usize> {
+    /// Best parameters so far.
+    pub x: [R; P],
+    /// Cost and its model there.
+    pub at: Linearization<R, P>,
+    /// Evaluations of [`Problem::linearize`] so far.
+    pub passes: u32,
+    /// How it ended, if it has.
+    pub stop: Option<Stop>,
+    damping: R,
+    growth: R,
+}
+
+impl<R: Real, const P: usize> Fit<R, P> {
+    /// Begins at the point of `bounds` nearest to `start`; one pass.
+    pub fn begin(problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, start: [R; P], options: &Options<R>) -> Self {
+        let x = bounds.clamp(start);
+        let at = problem.linearize(&x);
+        let stop = if is_finite(&at) { None } else { Some(Stop::NotFinite) };
+        Fit {
+            x,
+            at,
+            passes: 1,
+            stop,
+            damping: options.damping,
+            growth: R::of(2.0),
+        }
+    }
+
+    /// Makes steps until the fit ends, or has made `passes` in all.
+    pub fn run(&mut self, problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, options: &Options<R>, passes: u32) {
+        while self.stop.is_none() && self.passes < passes {
+            self.step(problem, bounds, options);
+        }
+    }
+
+    /// One trial step: one pass, or none if the fit ends before it.
+    pub fn step(&mut self, problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, options: &Options<R>) {
+        if self.stop.is_some() {
+            return;
+        }
+        if self.passes >= options.max_passes {
+            self.stop = Some(Stop::Passes);
+            return;
+        }
+        let Linearization {
+            cost,
+            gradient,
+            hessian,
+        } = self.at;
+        let mut lower = [R::ZERO; P];
+        let mut upper = [R::ZERO; P];
+        let mut damped = hessian;
+        for i in 0..P {
+            lower[i] = bounds.lower[i] - self.x[i];
+            upper[i] = bounds.upper[i] - self.x[i];
+            damped[i][i] = hessian[i][i] + self.damping * hessian[i][i].max(R::MIN_POSITIVE);
+        }
+        let step = boxqp::minimize(&damped, &gradient, &lower, &upper);
+        let mut x = self.x;
+        let mut moved = false;
+        for i in 0..P {
+            // A step to a bound ends on it, whatever the rounding of the sum.
+            x[i] = if step[i] == upper[i] {
+                bounds.upper[i]
+            } else if step[i] == lower[i] {
+                bounds.lower[i]
+            } else {
+                (self.x[i] + step[i]).max(bounds.lower[i]).min(bounds.upper[i])
+            };
+            moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
+        }
+        if !moved {
+            self.stop = Some(Stop::Step);
+            return;
+        }
+        let mut predicted = R::ZERO;
+        for i in 0..P {
+            let mut h_step = R::ZERO;
+            for j in 0..P {
+                h_step += hessian[i][j] * step[j];
+            }
+            predicted -= step[i] * (gradient[i] + gradient[i] + h_step);
+        }
+        if self.damping <= R::of(1e-2) && !(predicted > options.cost_tolerance * cost) {
+            self.stop = Some(Stop::Cost);
+            return;
+        }
+        let trial = problem.linearize(&x);
+        self.passes += 1;
+        let gain = (cost - trial.cost) / predicted;
+        if trial.cost < cost && is_finite(&trial) {
+            self.x = x;
+            self.at = trial;
+            let two = R::of(2.0);
+            let wave = two * gain.min(R::ONE) - R::ONE;
+            self.damping *= (R::ONE - wave * wave * wave).max(R::of(1.0 / 3.0));
+            self.damping = self.damping.max(R::MIN_POSITIVE);
+            self.growth = two;
+        } else {
+            self.damping = (self.damping * self.growth).min(R::ONE / R::EPSILON / R::EPSILON);
+            self.growth = (self.growth + self.growth).min(R::of(1e6));
+        }
+    }
+}
+
+/// A whole fit from one start.
+pub fn fit<R: Real, const P: usize>(
+    problem: &impl Problem<R, P>,
+    bounds: &Bounds<R, P>,
+    start: [R; P],
+    options: &Options<R>,
+) -> Fit<R, P> {
+    let mut fit = Fit::begin(problem, bounds, start, options);
+    fit.run(problem, bounds, options, u32::MAX);
+    fit
+}
+
+fn is_finite<R: Real, const P: usize>(at: &Linearization<R, P>) -> bool {
+    let mut finite = at.cost.is_finite();
+    for i in 0..P {
+        finite &= at.gradient[i].is_finite();
+        for j in 0..P {
+            finite &= at.hessian[i][j].is_finite();
+        }
+    }
+    finite
+}

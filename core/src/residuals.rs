@@ -1,0 +1,157 @@
+//! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of eight rows (Eq. 15-17).
+
+use crate::brdf::{Brdf, Params, has, parameters, slot};
+use crate::geometry::{Block, LANES};
+use crate::lm::{Bounds, Linearization, Problem};
+use crate::real::Real;
+
+/// The blocks of one scan, for a model of `TERMS` with its `P` parameters.
+///
+/// The solver's coordinates are those parameters in the order of [`crate::brdf::NAMES`], with kappa^2 in place of kappa: F is even in kappa, so a search in kappa can not leave 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
+    blocks: &'a [Block<R>],
+}
+
+impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
+    const MATCHES: () = assert!(P == parameters(TERMS), "P must be parameters(TERMS)");
+
+    /// The scan whose observations are in `blocks`.
+    pub fn new(blocks: &'a [Block<R>]) -> Self {
+        let () = Self::MATCHES;
+        Scan { blocks }
+    }
+
+    /// Its observations.
+    pub fn blocks(&self) -> &'a [Block<R>] {
+        self.blocks
+    }
+
+    /// Solver coordinates of `params`.
+    pub fn coordinates(params: &Params<R>) -> [R; P] {
+        let mut x = [R::ZERO; P];
+        let mut all = params.to_array();
+        all[5] *= all[5];
+        for (index, value) in all.into_iter().enumerate() {
+            if has(TERMS, index) {
+                if let Some(place) = x.get_mut(slot(TERMS, index)) {
+                    *place = value;
+                }
+            }
+        }
+        x
+    }
+
+    /// Parameters at solver coordinates; those of absent terms are 0, and n is 1.
+    pub fn params(x: &[R; P]) -> Params<R> {
+        let mut params = Self::expand(x);
+        params.kappa = params.kappa.sqrt();
+        params
+    }
+
+    /// The bounds on the solver's coordinates.
+    pub fn bounds(lower: &Params<R>, upper: &Params<R>) -> Bounds<R, P> {
+        Bounds {
+            lower: Self::coordinates(lower),
+            upper: Self::coordinates(upper),
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn expand(x: &[R; P]) -> Params<R> {
+        let get = |index: usize, absent: R| {
+            if has(TERMS, index) {
+                x.get(slot(TERMS, index)).copied().unwrap_or(absent)
+            } else {
+                absent
+            }
+        };
+        Params {
+            rho_d: get(0, R::ZERO),
+            rho_s: get(1, R::ZERO),
+            rho_v: get(2, R::ZERO),
+            m: get(3, R::ONE),
+            n: get(4, R::ONE),
+            kappa: get(5, R::ZERO),
+        }
+    }
+}
+
+/// Number of partial sums that run side by side.
+pub(crate) const SUMS: usize = LANES / 2;
+
+/// Adds the products of two columns of a block to the partial sums: lane k and lane k + 8 go to sum k.
+#[inline(always)]
+pub(crate) fn accumulate<R: Real>(sums: &mut [R; SUMS], x: &[R; LANES], y: &[R; LANES]) {
+    for k in 0..SUMS {
+        sums[k] += x[k] * y[k] + x[k + SUMS] * y[k + SUMS];
+    }
+}
+
+/// The total, in an order that every target keeps.
+#[inline(always)]
+pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
+    ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]))
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
+    #[inline(always)]
+    fn cost(&self, x: &[R; P]) -> R {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let mut squares = [R::ZERO; SUMS];
+        for block in self.blocks {
+            let model = brdf.rows::<LANES, false>(block);
+            let residual = residuals(block, &model.ln_f);
+            accumulate(&mut squares, &residual, &residual);
+        }
+        total(&squares)
+    }
+
+    #[inline(always)]
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let mut squares = [R::ZERO; SUMS];
+        let mut gradient = [[R::ZERO; SUMS]; P];
+        let mut hessian = [[[R::ZERO; SUMS]; P]; P];
+        for block in self.blocks {
+            let model = brdf.rows::<LANES, true>(block);
+            let residual = residuals(block, &model.ln_f);
+            let mut rows = [[R::ZERO; LANES]; P];
+            for index in 0..6 {
+                if has(TERMS, index) {
+                    rows[slot(TERMS, index)] = model.gradient[index];
+                }
+            }
+            accumulate(&mut squares, &residual, &residual);
+            for i in 0..P {
+                accumulate(&mut gradient[i], &rows[i], &residual);
+                for j in 0..=i {
+                    accumulate(&mut hessian[i][j], &rows[i], &rows[j]);
+                }
+            }
+        }
+        let mut sums = Linearization {
+            cost: total(&squares),
+            gradient: [R::ZERO; P],
+            hessian: [[R::ZERO; P]; P],
+        };
+        for i in 0..P {
+            sums.gradient[i] = total(&gradient[i]);
+            for j in 0..=i {
+                let sum = total(&hessian[i][j]);
+                sums.hessian[i][j] = sum;
+                sums.hessian[j][i] = sum;
+            }
+        }
+        sums
+    }
+}
+
+#[inline(always)]
+fn residuals<R: Real>(block: &Block<R>, ln_f: &[R; LANES]) -> [R; LANES] {
+    let mut residual = [R::ZERO; LANES];
+    for lane in 0..LANES {
+        residual[lane] = (ln_f[lane] - block.ln_f[lane]) * block.weight[lane];
+    }
+    residual
+}

@@ -1,0 +1,48 @@
+//! Seeded starts: start i is a function of (seed, i, bounds) alone, so that starts can be made in any order and on any number of threads.
+
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::lm::Bounds;
+use crate::real::Real;
+
+/// The generator of start `i`: xoshiro256++, its state from `seed` and `i` through two rounds of SplitMix64's mixing.
+fn generator(seed: u64, i: u64) -> Xoshiro256PlusPlus {
+    let mut z = seed ^ mix(i.wrapping_add(1));
+    z = mix(z);
+    Xoshiro256PlusPlus::seed_from_u64(z)
+}
+
+/// The finaliser of SplitMix64: a bijection in which each input bit changes half of the output bits.
+fn mix(x: u64) -> u64 {
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// Uniform over the box (section 3 of the paper).
+pub fn uniform<R: Real, const P: usize>(seed: u64, i: u64, bounds: &Bounds<R, P>) -> [R; P] {
+    let mut random = generator(seed, i);
+    let mut x = bounds.lower;
+    for (k, value) in x.iter_mut().enumerate() {
+        let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
+        *value = (lower + (upper - lower) * R::unit(random.next_u64())).min(upper);
+    }
+    x
+}
+
+/// `D` numbers in [0, 1) for candidate `i`: Kronecker's sequence of the generalised golden ratio, shifted by the seed.
+///
+/// It fills the cube more evenly than random points: any `k` successive ones leave no gap much wider than `k^(-1/D)`.
+pub fn even<R: Real, const D: usize>(seed: u64, i: u64) -> [R; D] {
+    // Steps 2^64 / g^k, where g is the root of g^(D+1) = g + 1; for D = 3, g = 1.2207440846...
+    const STEPS: [u64; 3] = [0xd1b5_4a32_d192_ed03, 0xabc9_8388_fb8f_ac03, 0x8cb9_2ba7_2f3d_8dd7];
+    let mut random = generator(seed, u64::MAX);
+    let mut point = [R::ZERO; D];
+    for (k, value) in point.iter_mut().enumerate() {
+        let shift = random.next_u64();
+        let step = STEPS[k % STEPS.len()];
+        *value = R::unit(shift.wrapping_add(step.wrapping_mul(i)));
+    }
+    point
+}

@@ -1,0 +1,112 @@
+//! Runs the passes over a scan on the widest vectors that the processor has; the bits do not depend on it.
+
+use brdfit_core::lm::{Bounds, Linearization, Problem};
+use brdfit_core::real::Real;
+use brdfit_core::residuals::Scan;
+use brdfit_core::search::Scene;
+use pulp::NullaryFnOnce;
+
+/// A set of vector instructions.
+#[derive(Clone, Copy, Debug)]
+pub enum Simd {
+    /// What every processor of the target has.
+    Portable,
+    /// AVX2.
+    #[cfg(target_arch = "x86_64")]
+    V3(pulp::x86::V3),
+    /// AVX-512.
+    #[cfg(target_arch = "x86_64")]
+    V4(pulp::x86::V4),
+}
+
+impl Simd {
+    /// Those that this processor has, slowest first.
+    pub fn available() -> Vec<Simd> {
+        #[allow(unused_mut)]
+        let mut list = vec![Simd::Portable];
+        #[cfg(target_arch = "x86_64")]
+        {
+            list.extend(pulp::x86::V3::try_new().map(Simd::V3));
+            list.extend(pulp::x86::V4::try_new().map(Simd::V4));
+        }
+        list
+    }
+
+    /// The fastest that this processor has.
+    pub fn best() -> Simd {
+        Simd::available().pop().unwrap_or(Simd::Portable)
+    }
+
+    /// `portable`, `avx2` or `avx512`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Simd::Portable => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Simd::V3(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(_) => "avx512",
+        }
+    }
+
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        match self {
+            Simd::Portable => f.call(),
+            #[cfg(target_arch = "x86_64")]
+            Simd::V3(simd) => simd.vectorize(f),
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(simd) => simd.vectorize(f),
+        }
+    }
+}
+
+/// A scan whose passes use `simd`.
+#[derive(Clone, Copy, Debug)]
+pub struct FastScan<'a, R, const TERMS: u8, const P: usize> {
+    /// The observations.
+    pub scan: Scan<'a, R, TERMS, P>,
+    /// The instructions.
+    pub simd: Simd,
+}
+
+struct Cost<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
+impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TERMS, P> {
+    type Output = R;
+    #[inline(always)]
+    fn call(self) -> R {
+        self.0.cost(self.1)
+    }
+}
+
+struct Linearize<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
+impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R, TERMS, P> {
+    type Output = Linearization<R, P>;
+    #[inline(always)]
+    fn call(self) -> Linearization<R, P> {
+        self.0.linearize(self.1)
+    }
+}
+
+struct Candidate<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a Bounds<R, P>, u64, u64);
+impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Candidate<'_, R, TERMS, P> {
+    type Output = [R; P];
+    #[inline(always)]
+    fn call(self) -> [R; P] {
+        self.0.candidate(self.1, self.2, self.3)
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R, TERMS, P> {
+    fn cost(&self, x: &[R; P]) -> R {
+        self.simd.run(Cost(&self.scan, x))
+    }
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        self.simd.run(Linearize(&self.scan, x))
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64) -> [R; P] {
+        self.simd.run(Candidate(&self.scan, bounds, seed, i))
+    }
+}

@@ -14,6 +14,8 @@ pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
     /// cos theta_d nearest to the peak of each lobe.
     peaks: [[R; 1]; 2],
+    nearest: [R; 2],
+    pub(crate) finest: R,
 }
 
 impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
@@ -23,18 +25,36 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
         let mut peaks = [[R::ONE]; 2];
-        let mut nearest = [R::MAX; 2];
-        for block in blocks {
-            for lobe in 0..2 {
+        let mut finest = R::MAX;
+        let mut tan2_nearest = [R::ZERO; 2];
+        for lobe in 0..2 {
+            // The three smallest tan^2 theta_h.
+            let mut nearest = [R::MAX; 3];
+            for block in blocks {
                 for lane in 0..LANES {
-                    if block.tan2_theta_h[lobe][lane] < nearest[lobe] && block.weight[lane] > R::ZERO {
-                        nearest[lobe] = block.tan2_theta_h[lobe][lane];
-                        peaks[lobe] = [block.cos_theta_d[lobe][lane]];
+                    let mut tan2 = block.tan2_theta_h[lobe][lane];
+                    if block.weight[lane] > R::ZERO {
+                        if tan2 < nearest[0] {
+                            peaks[lobe] = [block.cos_theta_d[lobe][lane]];
+                        }
+                        for place in &mut nearest {
+                            if tan2 < *place {
+                                core::mem::swap(place, &mut tan2);
+                            }
+                        }
                     }
                 }
             }
+            finest = finest.min(nearest[2]);
+            tan2_nearest[lobe] = nearest[0];
         }
-        Scan { blocks, peaks }
+        let finest = R::of(0.3) * finest.sqrt();
+        Scan {
+            blocks,
+            peaks,
+            nearest: tan2_nearest,
+            finest,
+        }
     }
 
     /// Its observations.
@@ -131,13 +151,20 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
         let from = Index::new(old.n, old.kappa).lanes::<2, 1, true>(&self.peaks, 0..2);
         let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
+        // Height over rho F: exp(-tan^2 theta_h / m^2) / m^2 at the sample nearest to the peak, as the ratio of new to old.
+        let (inverse, inverse_new) = (R::ONE / old.m, R::ONE / new.m.max(R::MIN_POSITIVE));
         let mut bent = to;
         for lobe in 0..2 {
             if has(TERMS, 1 + lobe) {
                 let k = slot(TERMS, 1 + lobe);
+                let tan2 = self.nearest[lobe];
+                let slope = R::of(2.0) * (tan2 * inverse * inverse - R::ONE) * inverse * change.m;
                 let f = from.f[lobe][0];
-                let amplitude = f * to[k] + x[k] * (from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2);
-                let f = there.f[lobe][0];
+                let amplitude = f * (to[k] + x[k] * slope)
+                    + x[k] * (from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2);
+                let sharper = inverse_new * inverse_new / (inverse * inverse);
+                let exponent = tan2 * (inverse * inverse - inverse_new * inverse_new);
+                let f = there.f[lobe][0] * sharper * exponent.max(-R::LIFT).min(R::LIFT).exp();
                 if amplitude > R::ZERO && f > R::TINY {
                     bent[k] = amplitude / f;
                 }

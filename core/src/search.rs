@@ -21,7 +21,7 @@ const ROUND: u32 = 64;
 /// How many of them go on, and until how many passes of a fit, stage by stage; the last converge.
 const STAGES: [(usize, u32); 3] = [(16, 3), (8, 6), (4, u32::MAX)];
 /// Candidates like the best minimum, in the last round.
-const VARIATIONS: u32 = 24;
+const VARIATIONS: u32 = 32;
 /// Their stages.
 const VARIATION_STAGES: [(usize, u32); 2] = [(6, 5), (2, u32::MAX)];
 /// Most candidates that go on from a round.

@@ -359,5 +359,9 @@ fn minima_table(minima: &[Minimum]) -> String {
 /// Six significant digits, for reading.
 fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
-    shortest(rounded)
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
 }

@@ -464,6 +464,45 @@ fn dropped_rows_are_counted() {
 }
 
 #[test]
+fn rounding_to_single_precision_names_the_line() {
+    let (folder, file) = scene();
+    let grazing = write(
+        &folder,
+        "grazing.csv",
+        fs::read_to_string(&file).unwrap() + "30,89.9999999,1\n",
+    );
+    assert!(json(&succeed(&["fit", &grazing, "--format", "json"]))["rms_ln"].is_f64());
+    let message = fail(&["fit", &grazing, "--precision", "f32"]);
+    assert!(
+        message.starts_with(&format!("{grazing}:84: ")) && message.contains("f64"),
+        "{message}"
+    );
+}
+
+#[test]
+fn extreme_bounds_neither_panic_nor_give_nan() {
+    let (_folder, file) = scene();
+    for fix in ["m=1e-6", "m=1e6", "n=1e6", "kappa=1e6", "rho_s=1e6", "rho_d=0"] {
+        for precision in ["f64", "f32"] {
+            for method in ["default", "paper"] {
+                let options = [
+                    "--fix",
+                    fix,
+                    "--precision",
+                    precision,
+                    "--method",
+                    method,
+                    "--starts",
+                    "20",
+                ];
+                let found = json(&succeed(&[&["fit", &file, "--format", "json"], &options[..]].concat()));
+                assert!(found["mse2"].is_f64(), "{options:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn output_is_whole_or_as_before() {
     let (folder, file) = scene();
     let result: PathBuf = folder.path().join("result.json");

@@ -107,6 +107,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Json => report::json(&reports),
         Format::Csv => report::csv(&reports, arguments.minima),
     };
+    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
     for measurement in measurements.iter().filter(|measurement| measurement.dropped > 0) {
         let (file, dropped, kept) = (&measurement.file, measurement.dropped, measurement.samples.len());
         let rows = if dropped == 1 { "row" } else { "rows" };
@@ -115,7 +116,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             "{file}: left out {dropped} {rows} that are not valid, kept {kept}"
         );
     }
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+    Ok(())
 }
 
 /// What the arguments ask of the engine.
@@ -168,6 +169,9 @@ fn fit(measurement: &Measurement, options: &FitOptions) -> Result<Report, Error>
     let outcome = engine::fit(&measurement.samples, options);
     let elapsed = begun.elapsed();
     match outcome {
+        Ok(outcome) if !outcome.cost.is_finite() => Err(Error::new("no start gives a finite model")
+            .in_file(&measurement.file)
+            .help("take less extreme --bounds or --precision f64")),
         Ok(outcome) => Ok(Report::new(measurement, options, outcome, elapsed)),
         Err(error) => Err(explain(measurement, error)),
     }

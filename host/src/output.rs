@@ -25,6 +25,10 @@ pub fn replace_file(path: &Path, contents: &[u8]) -> Result<(), Error> {
         _ => Path::new("."),
     };
     let write = || -> io::Result<()> {
+        // A device or a pipe, such as /dev/null, is written to and not replaced.
+        if path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+            return std::fs::OpenOptions::new().write(true).open(path)?.write_all(contents);
+        }
         let mut builder = tempfile::Builder::new();
         // Private by default; a result is an ordinary file, so the user's mask decides.
         #[cfg(unix)]

@@ -3,4 +3,5 @@
 //! The mathematics is in [`brdfit_core`]; this crate reads files, chooses what to run, and reports.
 
 pub mod engine;
+pub mod plot;
 pub mod simd;

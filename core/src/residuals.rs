@@ -1,6 +1,7 @@
 //! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of eight rows (Eq. 15-17).
 
 use crate::brdf::{Brdf, Params, has, parameters, slot};
+use crate::fresnel::Index;
 use crate::geometry::{Block, LANES};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::real::Real;
@@ -11,6 +12,8 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
+    /// cos theta_d nearest to the peak of each lobe.
+    peaks: [[R; 1]; 2],
 }
 
 impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
@@ -19,7 +22,19 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     /// The scan whose observations are in `blocks`.
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
-        Scan { blocks }
+        let mut peaks = [[R::ONE]; 2];
+        let mut nearest = [R::MAX; 2];
+        for block in blocks {
+            for lobe in 0..2 {
+                for lane in 0..LANES {
+                    if block.tan2_theta_h[lobe][lane] < nearest[lobe] && block.weight[lane] > R::ZERO {
+                        nearest[lobe] = block.tan2_theta_h[lobe][lane];
+                        peaks[lobe] = [block.cos_theta_d[lobe][lane]];
+                    }
+                }
+            }
+        }
+        Scan { blocks, peaks }
     }
 
     /// Its observations.
@@ -105,6 +120,30 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             accumulate(&mut squares, &residual, &residual);
         }
         total(&squares)
+    }
+
+    /// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        if !has(TERMS, 4) {
+            return to;
+        }
+        let (old, change, new) = (Self::expand(x), Self::expand(step), Self::expand(&to));
+        let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
+        let from = Index::new(old.n, old.kappa).lanes::<2, 1, true>(&self.peaks, 0..2);
+        let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
+        let mut bent = to;
+        for lobe in 0..2 {
+            if has(TERMS, 1 + lobe) {
+                let k = slot(TERMS, 1 + lobe);
+                let f = from.f[lobe][0];
+                let amplitude = f * to[k] + x[k] * (from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2);
+                let f = there.f[lobe][0];
+                if amplitude > R::ZERO && f > R::TINY {
+                    bent[k] = amplitude / f;
+                }
+            }
+        }
+        bent
     }
 
     #[inline(always)]

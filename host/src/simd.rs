@@ -103,6 +103,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.simd.run(Linearize(&self.scan, x))
     }
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        self.scan.bend(x, step, to)
+    }
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {

@@ -3,5 +3,6 @@
 //! The mathematics is in [`brdfit_core`]; this crate reads files, chooses what to run, and reports.
 
 pub mod engine;
+pub mod paper;
 pub mod plot;
 pub mod simd;

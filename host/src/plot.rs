@@ -8,6 +8,7 @@ use std::fmt::Write;
 
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
 
 use axis::Axis;
 use curve::{curve, mse2};
@@ -115,9 +116,9 @@ fn panels(samples: &[Sample<f64>]) -> Vec<Panel> {
             theta_i: sample.theta_i,
             points: Vec::new(),
         });
-        let forward = sample.delta_phi.cos() < 0.0;
+        let forward = Real::sin_cos(sample.delta_phi).1 < 0.0;
         let theta_s = if forward { sample.theta_s } else { -sample.theta_s };
-        panel.points.push((theta_s.to_degrees(), sample.brdf.log10()));
+        panel.points.push((theta_s.to_degrees(), axis::log10(sample.brdf)));
     }
     groups.into_values().collect()
 }

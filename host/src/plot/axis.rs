@@ -1,5 +1,9 @@
 //! Axes: from values to pixels, with their ticks.
 
+use std::f64::consts::LOG10_E;
+
+use brdfit_core::real::Real;
+
 use super::svg;
 
 /// One tick; without a label it is a minor one.
@@ -66,14 +70,14 @@ impl Axis {
         }
         for decade in steps(low - 1.0, high, 1.0).filter(|_| decades <= most) {
             for mantissa in 1..10 {
-                let at = decade + f64::from(mantissa).log10();
+                let at = decade + log10(f64::from(mantissa));
                 let label = match mantissa {
                     1 if decades >= 3.0 => continue,
                     1 | 2 | 5 => true,
                     3 | 7 => high - low < 0.8,
                     _ => false,
                 };
-                let value = f64::from(mantissa) * 10f64.powf(decade);
+                let value = f64::from(mantissa) * Real::exp(decade / LOG10_E);
                 let label = (label && decades < 3.0).then(|| svg::number(value));
                 if low <= at && at <= high {
                     ticks.push(Tick { at, label });
@@ -130,4 +134,9 @@ fn steps(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 /// A number as short as it goes, with a true minus sign.
 pub fn plain(value: f64) -> String {
     format!("{value}").replace('-', "−")
+}
+
+/// The logarithm that the axis shows.
+pub fn log10(value: f64) -> f64 {
+    Real::ln(value) * LOG10_E
 }

@@ -2,6 +2,7 @@
 
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::real::Real;
 use std::f64::consts::{LOG10_E, PI};
 
 use super::axis::Axis;
@@ -29,9 +30,10 @@ pub fn mse2(params: &Params<f64>, samples: &[Sample<f64>]) -> f64 {
     let model = Brdf::<f64, ALL>::new(params);
     let squares = samples.iter().filter_map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-        Some((model.ln_f(&geometry) - sample.brdf.ln()).powi(2))
+        let residual = model.ln_f(&geometry) - Real::ln(sample.brdf);
+        Some(residual * residual)
     });
-    squares.sum::<f64>() / (samples.len() as f64).powi(2)
+    squares.sum::<f64>() / (samples.len() * samples.len()) as f64
 }
 
 /// theta_s in degrees and log10 of the model there.
@@ -76,7 +78,7 @@ fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     while let Some((first, last)) = open.pop() {
         let (a, b) = (points[first], points[last]);
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
+        let length = (dx * dx + dy * dy).sqrt().max(f64::MIN_POSITIVE);
         let distance = |p: (f64, f64)| ((p.0 - a.0) * dy - (p.1 - a.1) * dx).abs() / length;
         let inner = (first + 1..last).map(|k| (k, distance(points[k])));
         let Some((k, far)) = inner.max_by(|a, b| a.1.total_cmp(&b.1)) else {

@@ -81,7 +81,7 @@ pub fn number(value: f64) -> String {
     if !(1e-3..1e4).contains(&value.abs()) {
         return scientific(value);
     }
-    let decimals = (3 - value.abs().log10().floor() as i32).max(0) as usize;
+    let decimals = (3 - super::axis::log10(value.abs()).floor() as i32).max(0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').into()

@@ -46,7 +46,7 @@ struct Panel {
 /// `curves` are the distinct minima, best first: the best is a thick line, the others are thin ones; it may be empty.
 /// Samples out of plane are projected: theta_s counts as forward where cos(delta_phi) < 0, while the curves are those in plane.
 /// All panels share both ranges: the horizontal one is that of the data, the vertical one that of the data and of the best curve's peak, up to a decade above the data; lines that leave it are cut.
-/// Of very many angles, samples or minima an even choice (of minima: the best) is drawn, and the legend says so, so the file stays below 100 kB.
+/// Of very many only some are drawn (every k-th angle, every k-th sample, the best minima), and the picture says so; so the file stays below 100 kB.
 pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) -> String {
     let all = panels(samples);
     let panels: Vec<&Panel> = all.iter().step_by(all.len().div_ceil(PANELS).max(1)).collect();
@@ -72,12 +72,13 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
         "font-size=\"17\" font-weight=\"bold\"",
         &svg::escape(title),
     );
-    legend(&mut out, samples, curves, (panels.len(), all.len()));
+    legend(&mut out, samples, curves);
     let _ = write!(
         out,
         "<clipPath id=\"a\"><rect width=\"{width:.1}\" height=\"{height:.1}\"/></clipPath>"
     );
     let stride = samples.len().div_ceil(POINTS).max(1);
+    left_out(&mut out, panels.len(), all.len(), stride);
     for (place, panel) in panels.iter().enumerate() {
         let left = LEFT + (place % columns) as f64 * (width + GAP);
         let top = TOP + (place / columns) as f64 * (height + CAPTION) + CAPTION;
@@ -172,29 +173,26 @@ fn frame(out: &mut String, x: &Axis, y: &Axis, left: bool, bottom: bool) {
 }
 
 /// What the marks mean, how well the curves fit, and the best parameters.
-fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>], (drawn, angles): (usize, usize)) {
+fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>]) {
     let y = 50.0;
-    let mut measured = format!("measured ({})", samples.len());
-    if drawn < angles {
-        let _ = write!(measured, ", {drawn} of {angles} angles");
-    }
+    let measured = format!("measured ({})", samples.len());
     let _ = write!(out, "<g fill=\"none\" stroke-linecap=\"round\">");
     svg::dots(out, [0.0, 9.0, 18.0].map(|dx| (LEFT + 5.0 + dx, y - 4.0)).into_iter());
     let mut at = LEFT + 32.0;
     let mut entries = vec![(measured, 0)];
-    let errors: Vec<f64> = curves.iter().map(|params| mse2(params, samples)).collect();
-    if let Some((best, others)) = errors.split_first() {
+    if let Some((best, others)) = curves.split_first() {
         let mse = format!("MSE{}", svg::sup("2"));
-        entries.push((format!("best fit, {mse} = {}", svg::number(*best)), 1));
-        if !others.is_empty() {
-            let worst = others.iter().copied().fold(0.0, f64::max);
+        let error = svg::number(mse2(best, samples));
+        entries.push((format!("best fit, {mse} = {error}"), 1));
+        if let Some(worst) = others.last() {
+            let error = svg::number(mse2(worst, samples));
             let kind = if others.len() == 1 { "minimum" } else { "minima" };
             let range = if others.len() == 1 { "=" } else { "up to" };
             let drawn = match others.len() {
                 count if count > OTHERS => format!("{OTHERS} of {count}"),
                 count => count.to_string(),
             };
-            let text = format!("{drawn} other {kind}, {mse} {range} {}", svg::number(worst));
+            let text = format!("{drawn} other {kind}, {mse} {range} {error}");
             entries.push((text, 2));
         }
     }
@@ -220,6 +218,21 @@ fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>], (dr
             .map(|(value, symbol)| format!("{symbol} = {}", svg::number(value)));
         let text = values.collect::<Vec<_>>().join(",  ");
         svg::text(out, LEFT, y + 22.0, svg::INK, &text);
+    }
+}
+
+/// Says in the upper right corner what is not drawn.
+fn left_out(out: &mut String, drawn: usize, angles: usize, stride: usize) {
+    let mut notes = Vec::new();
+    if drawn < angles {
+        notes.push(format!("{drawn} of {angles} incident angles"));
+    }
+    if stride > 1 {
+        notes.push(format!("one in {stride} samples"));
+    }
+    if !notes.is_empty() {
+        let note = format!("shown: {}", notes.join(", "));
+        svg::text(out, WIDTH - RIGHT, 26.0, "text-anchor=\"end\"", &note);
     }
 }
 
@@ -249,7 +262,7 @@ mod tests {
         assert!(svg.len() < 100_000, "{} bytes", svg.len());
         assert_eq!(svg.matches("translate(").count(), 10);
         assert!(
-            svg.contains("10 of 40 angles")
+            svg.contains("shown: 10 of 40 incident angles, one in 3 samples")
                 && svg.contains("24 of 63 other minima")
                 && svg.contains("&lt;&amp;&gt;")
                 && !svg.contains("NaN")

@@ -28,7 +28,7 @@ impl Axis {
     /// Degrees from left to right.
     pub fn angles(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
         let (low, high) = range(values, -90.0, 90.0, 4.0);
-        let most = (pixels / 60.0).min(9.0);
+        let most = (pixels / 42.0).min(9.0);
         let step = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0]
             .into_iter()
             .find(|s| (high - low) / s <= most);
@@ -38,7 +38,9 @@ impl Axis {
         let (low, high) = (low - margin, high + margin);
         let ticks = steps(low, high, minor).map(|at| {
             let turns = at / step;
-            let major = (turns - turns.round()).abs() < 1e-6;
+            // In a narrow panel a label at the very end would run into the next panel's.
+            let end = (at - low).min(high - at) / (high - low) * pixels;
+            let major = (turns - turns.round()).abs() < 1e-6 && (pixels > 500.0 || end > 14.0);
             Tick {
                 at,
                 label: major.then(|| plain(at)),

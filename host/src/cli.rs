@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use clap::{Parser, Subcommand};
 
 use crate::error::{EXIT_CODE, Error};
-use crate::{fit, simulate};
+use crate::{fit, paper, simulate};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -21,6 +21,7 @@ struct Cli {
 enum Command {
     Fit(fit::Arguments),
     Simulate(simulate::Arguments),
+    Paper(paper::Arguments),
 }
 
 /// What the program reads and writes.
@@ -55,6 +56,7 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<(), Error> {
     match command {
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
+        Command::Paper(arguments) => paper::run(arguments, streams),
     }
 }
 

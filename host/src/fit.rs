@@ -12,7 +12,8 @@ use crate::engine::{self, FitError, FitOptions, Method, Precision};
 use crate::error::Error;
 use crate::input::{self, Invalid, Measurement, STDIN};
 use crate::options;
-use crate::output::deliver;
+use crate::output::{deliver, replace_file};
+use crate::plot;
 use crate::report::{self, Report};
 
 /// Fits the model to scans
@@ -58,6 +59,9 @@ pub struct Arguments {
     /// Writes the result to a file
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Draws the scan with its distinct minima, as SVG; for one scan
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -85,6 +89,9 @@ enum Format {
 /// The first thing that is wrong with options, files or the fit.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = fit_options(arguments)?;
+    if arguments.plot.is_some() && arguments.scans.len() > 1 {
+        return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
+    }
     let measurements = read(arguments, streams)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
@@ -107,6 +114,13 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Json => report::json(&reports),
         Format::Csv => report::csv(&reports, arguments.minima),
     };
+    if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
+        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+        replace_file(
+            path,
+            plot::scan_svg(&measurement.file, &measurement.samples, &curves).as_bytes(),
+        )?;
+    }
     deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
     for measurement in measurements.iter().filter(|measurement| measurement.dropped > 0) {
         let (file, dropped, kept) = (&measurement.file, measurement.dropped, measurement.samples.len());

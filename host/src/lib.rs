@@ -12,6 +12,8 @@ pub mod fit;
 pub mod input;
 pub mod options;
 pub mod output;
+pub mod paper;
+pub mod plot;
 pub mod report;
 pub mod simd;
 pub mod simulate;

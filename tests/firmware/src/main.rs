@@ -51,7 +51,7 @@ fn main() -> ! {
         Err(_) => eprintln!("no command line"),
         Ok(args) => {
             // The first argument names the image.
-            for name in args.skip(1).flatten() {
+            for name in (&args).skip(1).flatten() {
                 exit = run(name);
             }
         }
@@ -60,7 +60,10 @@ fn main() -> ! {
 }
 
 fn run(name: &str) -> ExitCode {
-    let mut lines = Lines { buffer: [0; 128], filled: 0 };
+    let mut lines = Lines {
+        buffer: [0; 128],
+        filled: 0,
+    };
     match programs::PROGRAMS.iter().find(|program| program.0 == name) {
         None => {
             eprintln!("no program {name}");

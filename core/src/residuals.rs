@@ -117,9 +117,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             let model = brdf.rows::<LANES, true>(block);
             let residual = residuals(block, &model.ln_f);
             let mut rows = [[R::ZERO; LANES]; P];
-            for index in 0..6 {
+            for (index, derivative) in model.gradient.iter().enumerate() {
                 if has(TERMS, index) {
-                    rows[slot(TERMS, index)] = model.gradient[index];
+                    if let Some(row) = rows.get_mut(slot(TERMS, index)) {
+                        *row = *derivative;
+                    }
                 }
             }
             accumulate(&mut squares, &residual, &residual);

@@ -33,10 +33,10 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         let mut all = params.to_array();
         all[5] *= all[5];
         for (index, value) in all.into_iter().enumerate() {
-            if has(TERMS, index) {
-                if let Some(place) = x.get_mut(slot(TERMS, index)) {
-                    *place = value;
-                }
+            if has(TERMS, index)
+                && let Some(place) = x.get_mut(slot(TERMS, index))
+            {
+                *place = value;
             }
         }
         x
@@ -118,10 +118,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             let residual = residuals(block, &model.ln_f);
             let mut rows = [[R::ZERO; LANES]; P];
             for (index, derivative) in model.gradient.iter().enumerate() {
-                if has(TERMS, index) {
-                    if let Some(row) = rows.get_mut(slot(TERMS, index)) {
-                        *row = *derivative;
-                    }
+                if has(TERMS, index)
+                    && let Some(row) = rows.get_mut(slot(TERMS, index))
+                {
+                    *row = *derivative;
                 }
             }
             accumulate(&mut squares, &residual, &residual);

@@ -95,7 +95,9 @@ fn costs<R: Real>() {
     measure(&clock, "observation", || observation::<R>());
     measure(&clock, "cost", || pass_cost(&scan));
     measure(&clock, "linearize", || pass_linearize(&scan));
-    measure(&clock, "steps_10", || ten_steps(&scan));
+    let mut passes = 0;
+    measure(&clock, "steps", || passes = ten_steps(&scan));
+    print("steps", passes as usize - 1);
     measure(&clock, "fit", || whole_fit(&scan));
     measure(&clock, "search", || whole_search(&scan));
 }
@@ -114,13 +116,13 @@ fn pass_cost<R: Real>(scan: &Scan<R, TERMS, P>) {
 fn pass_linearize<R: Real>(scan: &Scan<R, TERMS, P>) {
     black_box(&scan.linearize(&black_box(start())));
 }
-/// One pass to begin, and ten steps, each with its pass.
+/// One pass to begin, and ten steps, each with its pass, or fewer if the fit ends; how many passes.
 #[inline(never)]
-fn ten_steps<R: Real>(scan: &Scan<R, TERMS, P>) {
+fn ten_steps<R: Real>(scan: &Scan<R, TERMS, P>) -> u32 {
     let (bounds, options) = (bounds(), Options::default());
     let mut fit = Fit::begin(scan, &bounds, black_box(start()), &options);
     fit.run(scan, &bounds, &options, 11);
-    black_box(&fit);
+    black_box(&fit).passes
 }
 #[inline(never)]
 fn whole_fit<R: Real>(scan: &Scan<R, TERMS, P>) {

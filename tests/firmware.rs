@@ -24,3 +24,31 @@ fn host_writes_the_lines_of_firmware() {
         assert_eq!(lines.len(), expected.len(), "{name}.out: number of lines");
     }
 }
+
+/// Name and version of each package of a lock file.
+fn packages(lock: &str) -> Vec<(&str, &str)> {
+    lock.split("[[package]]")
+        .filter_map(|package| {
+            let field = |key: &str| {
+                let line = package.lines().find_map(|line| line.strip_prefix(key))?;
+                Some(line.trim_start_matches(" = ").trim_matches('"'))
+            };
+            Some((field("name")?, field("version")?))
+        })
+        .collect()
+}
+
+#[test]
+fn host_and_firmware_use_the_same_versions() {
+    let host = packages(include_str!("../Cargo.lock"));
+    let firmware = packages(include_str!("firmware/Cargo.lock"));
+    for name in ["libm", "rand_core", "rand_xoshiro", "heapless"] {
+        let of = |list: &[(&str, &str)]| {
+            list.iter()
+                .find(|package| package.0 == name)
+                .map(|package| package.1.to_owned())
+        };
+        assert!(of(&host).is_some(), "{name} is no longer there");
+        assert_eq!(of(&host), of(&firmware), "{name}: run tests/firmware/run --bless");
+    }
+}

@@ -72,10 +72,10 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
 
     /// Takes a further fit of the minimum found from `start` in place of the old one, if it is no worse; not counted as a hit.
     pub fn refine(&mut self, fit: &Fit<R, P>, start: u64) {
-        if let Some(old) = self.list.iter_mut().find(|old| old.first_start == start) {
-            if fit.at.cost <= old.fit.at.cost {
-                old.fit = *fit;
-            }
+        if let Some(old) = self.list.iter_mut().find(|old| old.first_start == start)
+            && fit.at.cost <= old.fit.at.cost
+        {
+            old.fit = *fit;
         }
     }
 

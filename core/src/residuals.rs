@@ -68,10 +68,10 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         let mut all = params.to_array();
         all[5] *= all[5];
         for (index, value) in all.into_iter().enumerate() {
-            if has(TERMS, index) {
-                if let Some(place) = x.get_mut(slot(TERMS, index)) {
-                    *place = value;
-                }
+            if has(TERMS, index)
+                && let Some(place) = x.get_mut(slot(TERMS, index))
+            {
+                *place = value;
             }
         }
         x
@@ -183,9 +183,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             let model = brdf.rows::<LANES, true>(block);
             let residual = residuals(block, &model.ln_f);
             let mut rows = [[R::ZERO; LANES]; P];
-            for index in 0..6 {
-                if has(TERMS, index) {
-                    rows[slot(TERMS, index)] = model.gradient[index];
+            for (index, derivative) in model.gradient.iter().enumerate() {
+                if has(TERMS, index)
+                    && let Some(row) = rows.get_mut(slot(TERMS, index))
+                {
+                    *row = *derivative;
                 }
             }
             accumulate(&mut squares, &residual, &residual);

@@ -14,7 +14,7 @@ pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
     /// cos theta_d nearest to the peak of each lobe.
     peaks: [[R; 1]; 2],
-    nearest: [R; 2],
+    /// The least m that a few samples still see; dimensionless.
     pub(crate) finest: R,
 }
 
@@ -26,7 +26,6 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         let () = Self::MATCHES;
         let mut peaks = [[R::ONE]; 2];
         let mut finest = R::MAX;
-        let mut tan2_nearest = [R::ZERO; 2];
         for lobe in 0..2 {
             // The three smallest tan^2 theta_h.
             let mut nearest = [R::MAX; 3];
@@ -46,15 +45,9 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
                 }
             }
             finest = finest.min(nearest[2]);
-            tan2_nearest[lobe] = nearest[0];
         }
         let finest = R::of(0.3) * finest.sqrt();
-        Scan {
-            blocks,
-            peaks,
-            nearest: tan2_nearest,
-            finest,
-        }
+        Scan { blocks, peaks, finest }
     }
 
     /// Its observations.
@@ -151,22 +144,14 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
         let from = Index::new(old.n, old.kappa).lanes::<2, 1, true>(&self.peaks, 0..2);
         let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
-        // Height over rho F: exp(-tan^2 theta_h / m^2) / m^2 at the sample nearest to the peak, as the ratio of new to old.
-        let (inverse, inverse_new) = (R::ONE / old.m, R::ONE / new.m.max(R::MIN_POSITIVE));
         let mut bent = to;
         for lobe in 0..2 {
             if has(TERMS, 1 + lobe) {
                 let k = slot(TERMS, 1 + lobe);
-                let tan2 = self.nearest[lobe];
-                let slope = R::of(2.0) * (tan2 * inverse * inverse - R::ONE) * inverse * change.m;
-                let f = from.f[lobe][0];
-                let amplitude = f * (to[k] + x[k] * slope)
-                    + x[k] * (from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2);
-                let sharper = inverse_new * inverse_new / (inverse * inverse);
-                let exponent = tan2 * (inverse * inverse - inverse_new * inverse_new);
-                let f = there.f[lobe][0] * sharper * exponent.max(-R::LIFT).min(R::LIFT).exp();
-                if amplitude > R::ZERO && f > R::TINY {
-                    bent[k] = amplitude / f;
+                let d_f = from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2;
+                let amplitude = from.f[lobe][0] * to[k] + x[k] * d_f;
+                if amplitude > R::ZERO && there.f[lobe][0] > R::TINY {
+                    bent[k] = amplitude / there.f[lobe][0];
                 }
             }
         }

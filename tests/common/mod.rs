@@ -1,1 +1,10 @@
 //! Shared by the tests.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "oracles may use std's functions; the code under test may not"
+)]
+
+pub mod dual;
+pub mod mgh_problems;
+pub mod nist_models;
+pub mod tolerance;

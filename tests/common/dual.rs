@@ -1,4 +1,5 @@
 //! Dual numbers: a value with its exact derivatives by `P` parameters, and least-squares problems written in them.
+#![allow(clippy::suspicious_arithmetic_impl, reason = "the product and quotient rules")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -5,6 +5,8 @@
 )]
 
 pub mod dual;
+pub mod literal;
 pub mod mgh_problems;
 pub mod nist_models;
+pub mod reference;
 pub mod tolerance;

@@ -4,6 +4,7 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
+pub mod double_double;
 pub mod dual;
 pub mod literal;
 pub mod mgh_problems;

@@ -47,3 +47,17 @@ pub const FRESNEL_GRADIENT_F32: f64 = 3.5;
 pub const LITERAL_LN_F: f64 = 5e-14;
 /// p dlnf/dp less central differences over 2e-5 p, relative where above 1; measured 6.3e-10.
 pub const LITERAL_GRADIENT: f64 = 1e-9;
+/// exp in f64, ulp; measured 0.854.
+pub const EXP_F64: f64 = 1.0;
+/// ln in f64, ulp; measured 0.768.
+pub const LN_F64: f64 = 1.0;
+/// rsqrt in f64, ulp; measured 0.750.
+pub const RSQRT_F64: f64 = 1.0;
+/// exp in f32, ulp; measured 0.923.
+pub const EXP_F32: f64 = 1.0;
+/// ln in f32, ulp; measured 0.783.
+pub const LN_F32: f64 = 1.0;
+/// rsqrt in f32, ulp; measured 0.75.
+pub const RSQRT_F32: f64 = 1.0;
+/// Relative error of the double-double oracle; measured 5.1e-24, of ln near 1.
+pub const ORACLE: f64 = 1e-23;

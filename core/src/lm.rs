@@ -69,7 +69,7 @@ impl<R: Real> Default for Options<R> {
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// Converged: the linear model, without damping, promises a reduction of at most `cost_tolerance * cost`.
+    /// Converged: with a damping of at most 1e-2 the linear model promises a reduction of at most `cost_tolerance * cost`.
     Cost,
     /// Converged as far as rounding allows: no step longer than `step_tolerance` of each parameter lowers the cost.
     Step,

@@ -61,3 +61,5 @@ pub const LN_F32: f64 = 1.0;
 pub const RSQRT_F32: f64 = 1.0;
 /// Relative error of the double-double oracle; measured 5.1e-24, of ln near 1.
 pub const ORACLE: f64 = 1e-23;
+/// Relative difference of the parameters of one problem at five scales; measured 2.2e-16.
+pub const SCALES: f64 = 1e-15;

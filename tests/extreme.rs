@@ -14,7 +14,9 @@ use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{paper_fit, search};
 use brdfit_core::start;
+use brdfit_suite::tolerance::{self, check};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Table 1.
 const LOWER: [f64; 6] = [0.0, 0.0, 0.0, 1e-5, 1.0, 0.0];
@@ -48,7 +50,18 @@ fn assert_sound<R: Real, const P: usize>(
     first: R,
     fit: &Fit<R, P>,
 ) {
-    assert!(fit.stop.is_some() && fit.stop != Some(Stop::NotFinite), "{fit:?}");
+    // From rho_d = rho_s = rho_v = 0 the squares of d ln f / d rho may overflow f32: then nothing is done, and said so.
+    assert!(
+        fit.stop.is_some() && (fit.stop != Some(Stop::NotFinite) || R::MAX.f64() < 1e39),
+        "{fit:?}"
+    );
+    if fit.stop == Some(Stop::NotFinite) {
+        assert!(
+            fit.at.cost <= first && fit.at.hessian.iter().flatten().any(|h| !h.is_finite()),
+            "{fit:?}"
+        );
+        return;
+    }
     assert!(fit.at.cost.is_finite() && fit.at.cost <= first, "{fit:?} from {first}");
     for k in 0..P {
         assert!(
@@ -120,9 +133,8 @@ fn smoothest_and_roughest() {
     for m in [1e-5, 10.0] {
         let samples = simulated(0.8, 5, [0.1, 1.0, 0.5, m, 1.5, 0.2]);
         let (double, _) = both(&samples);
-        // Lambert's law fits the smoothest but for the peaks, which no sample but those at them sees.
         println!("m = {m:e}: cost {double:e}");
-        assert!(double < 1e-3 * samples.len() as f64);
+        assert!(double < tolerance::EXACT_F64);
     }
 }
 
@@ -135,12 +147,24 @@ fn grazing() {
     }
 }
 
+/// Found by the random directions: the product of all factors of d ln f / dm overflowed f32, though the derivative is 7e19.
+#[test]
+fn derivative_by_the_smallest_m_at_grazing() {
+    let geometry = Geometry::new(1.561_383_4_f32, 1.569_184_1, 0.0).expect("a valid pair of directions");
+    let material = [0.0, 78.216_11, 0.0, 1e-5, 1.0, 91.876_89];
+    let (_, gradient) = Brdf::<f32, ALL>::new(&params(material)).gradient(&geometry);
+    assert!(
+        gradient.iter().all(|d| d.is_finite()) && gradient[3] > 1e19,
+        "{gradient:?}"
+    );
+}
+
 #[test]
 fn metal_of_index_100() {
     let samples = simulated(0.5, 5, [0.1, 5.0, 0.5, 0.3, 100.0, 100.0]);
     let (double, single) = both(&samples);
     println!("n = kappa = 100: {double:e}, f32 {single:e}");
-    assert!(double < 1e-6 && single < 1e-4);
+    assert!(double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32);
 }
 
 #[test]
@@ -151,7 +175,7 @@ fn no_diffuse_term_and_every_lobe_underflows() {
         let geometry = Geometry::new(0.3, theta_s, PI).expect("a valid pair of directions");
         let (ln_f, gradient) = Brdf::<f64, ALL>::new(&params(material)).gradient(&geometry);
         let nearer = geometry.surface().tan2_theta_h.min(geometry.volume().tan2_theta_h);
-        assert!((ln_f / (-nearer * 1e10) - 1.0).abs() < 1e-6, "{ln_f}");
+        assert!((ln_f / (-nearer * 1e10) - 1.0).abs() < tolerance::NEEDLE, "{ln_f}");
         assert!(gradient.iter().all(|d| d.is_finite()));
     }
     let mut lower = LOWER;
@@ -170,15 +194,21 @@ fn no_diffuse_term_and_every_lobe_underflows() {
 fn one_sample_and_all_equal() {
     let one = [Sample::in_plane(0.5, 0.2, 0.03)];
     let (double, single) = both(&one);
-    assert!(double < 1e-20 && single < 1e-8, "{double:e} {single:e}");
+    assert!(
+        double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32,
+        "{double:e} {single:e}"
+    );
     let equal = plane(0.5, 5, |_| 0.1 / PI);
     let (double, single) = both(&equal);
-    assert!(double < 1e-20 && single < 1e-8, "{double:e} {single:e}");
+    assert!(
+        double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32,
+        "{double:e} {single:e}"
+    );
     let blocks = blocks::<f64>(&equal);
     let scan = Scan::<f64, DIFFUSE, 1>::new(&blocks);
     let bounds = Scan::<f64, DIFFUSE, 1>::bounds(&params(LOWER), &params(UPPER));
     let lambert = fit(&scan, &bounds, [0.9], &Options::default());
-    assert!((lambert.x[0] - 0.1).abs() < 1e-14, "{lambert:?}");
+    assert_eq!(lambert.x[0], 0.1);
 }
 
 #[test]
@@ -188,7 +218,7 @@ fn an_outlier_of_a_million() {
     let (double, single) = both(&samples);
     // It costs what one residual of ln(10^6) can cost.
     let most = (1e6f64).ln().powi(2);
-    assert!(double < most && single < most * 1.001, "{double} {single}");
+    assert!(double < most && single < most, "{double} {single}");
 }
 
 #[test]
@@ -228,7 +258,9 @@ fn duplicated_angles_count_twice() {
     let options = Options::default();
     let one = fit(&Scan::<f64, ALL, 6>::new(&one), &bounds, first, &options);
     let two = fit(&Scan::<f64, ALL, 6>::new(&two), &bounds, first, &options);
-    assert!((two.at.cost / one.at.cost - 2.0).abs() < 1e-9, "{one:?} {two:?}");
+    let error = (two.at.cost / one.at.cost / 2.0 - 1.0).abs();
+    println!("samples counted twice: {error:.1e}");
+    check(error, tolerance::TWICE);
     // All samples in one direction.
     both(&[Sample::in_plane(0.5, 0.2, 0.03), Sample::in_plane(0.5, 0.2, 0.05)].repeat(10));
 }
@@ -239,13 +271,13 @@ fn normal_incidence() {
     // Both lobes fall on one another: rho_s and rho_v can not be told apart, but the curve is fitted.
     let (double, single) = both(&samples);
     println!("theta_i = 0: {double:e}, f32 {single:e}");
-    assert!(double < 1e-6 && single < 1e-4);
+    assert!(double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32);
 }
 
 prop_compose! {
     fn any_sample()(
-        theta_i in prop_oneof![Just(0.0), 0.0..1.57, 1.55..1.5707],
-        theta_s in prop_oneof![Just(0.0), -1.57..1.57, 1.55..1.5707],
+        theta_i in prop_oneof![Just(0.0), 0.0..1.57, 1.55..1.57075],
+        theta_s in prop_oneof![Just(0.0), -1.57..1.57, 1.55..1.57075],
         delta_phi in prop_oneof![Just(PI), Just(0.0), -4.0..4.0],
         ln_f in prop_oneof![-7.0..3.0, -69.0..69.0],
     ) -> Sample<f64> {
@@ -265,8 +297,24 @@ prop_compose! {
     }
 }
 
+/// The same 48 cases on each run, unless the environment asks for more: `PROPTEST_CASES=1500 cargo test --release --test extreme`.
+fn config() -> ProptestConfig {
+    let asked = ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    if std::env::var_os("PROPTEST_CASES").is_some() {
+        return asked;
+    }
+    ProptestConfig {
+        cases: 48,
+        rng_seed: RngSeed::Fixed(1),
+        ..asked
+    }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
     fn any_scan_any_bounds(samples in prop::collection::vec(any_sample(), 1..40), (lower, upper) in any_bounds()) {

@@ -61,5 +61,17 @@ pub const LN_F32: f64 = 1.0;
 pub const RSQRT_F32: f64 = 1.0;
 /// Relative error of the double-double oracle; measured 5.1e-24, of ln near 1.
 pub const ORACLE: f64 = 1e-23;
-/// Relative difference of the parameters of one problem at five scales; measured 2.2e-16.
+/// Relative difference of the parameters and the cost of one problem at five scales; measured 2.2e-16.
 pub const SCALES: f64 = 1e-15;
+/// What the undamped linear model promises at `Stop::Cost`, relative to the cost: the default `cost_tolerance` and 10 % for the damping. A bound by documentation, not a measurement.
+pub const PROMISE: f64 = 1.1 * f64::EPSILON;
+/// Cost of a curve that can be fitted exactly, per unit of its scale, f64; measured 5e-32. A bound on noise that may be 0.
+pub const EXACT_CURVE: f64 = 1e-28;
+/// Cost of a scan that the model fits exactly, f64; measured 1.6e-15 at normal incidence, where rho_s and rho_v are one parameter, and below 1e-28 elsewhere.
+pub const EXACT_F64: f64 = 1e-14;
+/// The same in f32; measured 2.8e-12.
+pub const EXACT_F32: f64 = 1e-11;
+/// Relative error of the cost of samples that count twice; measured 4.9e-15.
+pub const TWICE: f64 = 1e-14;
+/// Relative distance of ln f from the nearer lobe's exponent of 10^8 to 10^10, from the other factors; measured below 1e-6. A bound on what is left out.
+pub const NEEDLE: f64 = 1e-6;

@@ -53,12 +53,12 @@ fn stop_cost_at_every_scale() {
         let ([g0, g1], [[a, b], [_, d]]) = (fit.at.gradient, fit.at.hessian);
         let promise = (g0 * g0 * d - 2.0 * g0 * g1 * b + g1 * g1 * a) / (a * d - b * b);
         assert!(
-            promise <= 1.1 * options.cost_tolerance * fit.at.cost,
+            promise <= tolerance::PROMISE * fit.at.cost,
             "{promise:e} of {:e}",
             fit.at.cost
         );
-        for k in 0..2 {
-            worst = worst.max((fit.x[k] / scale[k] / plain.x[k] - 1.0).abs());
+        for ((x, scale), plain) in fit.x.iter().zip(scale).zip(plain.x) {
+            worst = worst.max((x / scale / plain - 1.0).abs());
         }
         worst = worst.max((fit.at.cost / cost / plain.at.cost - 1.0).abs());
         assert!(

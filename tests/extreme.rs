@@ -87,14 +87,14 @@ fn run_all<R: Real, const TERMS: u8, const P: usize>(
     let scan = Scan::<R, TERMS, P>::new(&blocks);
     let bounds = Scan::<R, TERMS, P>::bounds(&params(lower), &params(upper));
     let options = Options {
-        max_passes: 200,
+        max_passes: 500,
         ..Options::default()
     };
     for i in 0..starts {
         let first = scan.cost(&start::uniform(1, i, &bounds));
         assert_sound(&scan, &bounds, first, &paper_fit(&scan, &bounds, 1, i, &options));
     }
-    let found = search(&scan, &bounds, 1, 16, &options);
+    let found = search(&scan, &bounds, 1, 64, &options);
     let best = found.minima.best().expect("a search finds a minimum").fit;
     assert_sound(&scan, &bounds, R::MAX, &best);
     best.at.cost.f64()
@@ -164,7 +164,7 @@ fn metal_of_index_100() {
     let samples = simulated(0.5, 5, [0.1, 5.0, 0.5, 0.3, 100.0, 100.0]);
     let (double, single) = both(&samples);
     println!("n = kappa = 100: {double:e}, f32 {single:e}");
-    assert!(double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32);
+    check(double.max(single), tolerance::METAL);
 }
 
 #[test]

@@ -12,16 +12,28 @@ use crate::start;
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS, P> {
     /// Candidate `i`: m, n and kappa spread evenly over the logarithm of their ranges, then the weights that fit best.
     #[inline(always)]
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64) -> [R; P] {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
         let mut x = bounds.lower;
         let u = start::even::<R, 3>(seed, i);
         if has(TERMS, 3) {
             let k = slot(TERMS, 3);
-            x[k] = log_between(bounds.lower[k], bounds.upper[k], u[0]);
+            if let Some(like) = like {
+                x[k] = like[k];
+            } else {
+                x[k] = log_between(
+                    bounds.lower[k].max(self.finest).min(bounds.upper[k]),
+                    bounds.upper[k].min(R::of(3.0)).max(bounds.lower[k]),
+                    u[0],
+                );
+            }
         }
         if has(TERMS, 4) {
             let k = slot(TERMS, 4);
-            x[k] = log_between(bounds.lower[k], bounds.upper[k], u[1]);
+            x[k] = log_between(
+                bounds.lower[k],
+                bounds.upper[k].min(R::of(10.0)).max(bounds.lower[k]),
+                u[1],
+            );
         }
         if has(TERMS, 5) {
             let k = slot(TERMS, 5);
@@ -31,7 +43,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
                 bounds.lower[k]
             } else {
                 let u = (u[2] - third) * R::of(1.5);
-                log_between(bounds.lower[k].max(R::of(1e-4)), bounds.upper[k].max(R::of(1e-4)), u)
+                log_between(
+                    bounds.lower[k].max(R::of(1e-3)),
+                    bounds.upper[k].min(R::of(100.0)).max(R::of(1e-3)),
+                    u,
+                )
             };
         }
         self.set_weights(&mut x, bounds);

@@ -91,9 +91,8 @@ impl<R: Real> Geometry<R> {
         let quarter_turn = R::PI * half;
         let (sin_i, cos_i) = theta_i.sin_cos();
         let (sin_s, cos_s) = theta_s.sin_cos();
-        if !(R::ZERO <= theta_i && theta_i < quarter_turn && theta_s.abs() < quarter_turn)
-            || !(cos_i > R::EPSILON && cos_s > R::EPSILON)
-        {
+        let above = R::ZERO <= theta_i && theta_i < quarter_turn && theta_s.abs() < quarter_turn;
+        if !(above && cos_i > R::EPSILON && cos_s > R::EPSILON) {
             return Err(SampleError::BeyondHorizon);
         }
         let (sin_sum, cos_sum) = ((theta_i + theta_s) * half).sin_cos();

@@ -31,3 +31,8 @@ pub mod real;
 pub mod residuals;
 pub mod search;
 pub mod start;
+
+/// The examples of the README are compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -20,6 +20,11 @@ pub trait Problem<R, const P: usize> {
     fn cost(&self, x: &[R; P]) -> R;
     /// The same with J'r and J'J.
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P>;
+    /// Where a step leads: `to` is `x + step`, and may be bent to where the linear model holds further, as long as it agrees with it to first order.
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        let _ = (x, step);
+        to
+    }
 }
 
 /// `lower <= x <= upper` for each parameter; equal bounds hold it fixed.
@@ -153,6 +158,11 @@ impl<R: Real, const P: usize> Fit<R, P> {
             damped[i][i] = hessian[i][i] + self.damping * scale;
         }
         let step = boxqp::minimize(&damped, &gradient, &lower, &upper);
+        let mut straight = self.x;
+        for i in 0..P {
+            straight[i] += step[i];
+        }
+        let bent = problem.bend(&self.x, &step, straight);
         let mut x = self.x;
         let mut moved = false;
         for i in 0..P {
@@ -162,7 +172,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             } else if step[i] == lower[i] {
                 bounds.lower[i]
             } else {
-                (self.x[i] + step[i]).max(bounds.lower[i]).min(bounds.upper[i])
+                bent[i].max(bounds.lower[i]).min(bounds.upper[i])
             };
             moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
         }

@@ -41,12 +41,41 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
         self.list.first()
     }
 
+    /// The best, to be improved.
+    pub(crate) fn best_mut(&mut self) -> Option<&mut Minimum<R, P>> {
+        self.list.first_mut()
+    }
+
+    /// True, and a hit more, if an unfinished fit has come so near to a minimum of the table that it would end there: within 1 % of cost, and 5 % of each parameter.
+    pub(crate) fn join(&mut self, fit: &Fit<R, P>, start: u64) -> bool {
+        let near = |old: &Minimum<R, P>| {
+            close(old.fit.at.cost, fit.at.cost, R::of(0.01))
+                && old
+                    .fit
+                    .x
+                    .iter()
+                    .zip(&fit.x)
+                    .all(|(&x, &y)| close(x, y, R::of(0.05)) || (x - y).abs() < R::of(1e-3))
+        };
+        match self.list.iter_mut().find(|old| near(old)) {
+            Some(old) => {
+                old.hits += 1;
+                old.first_start = old.first_start.min(start);
+                if fit.at.cost < old.fit.at.cost {
+                    old.fit = *fit;
+                }
+                true
+            }
+            None => false,
+        }
+    }
+
     /// Takes a further fit of the minimum found from `start` in place of the old one, if it is no worse; not counted as a hit.
     pub fn refine(&mut self, fit: &Fit<R, P>, start: u64) {
-        if let Some(old) = self.list.iter_mut().find(|old| old.first_start == start) {
-            if fit.at.cost <= old.fit.at.cost {
-                old.fit = *fit;
-            }
+        if let Some(old) = self.list.iter_mut().find(|old| old.first_start == start)
+            && fit.at.cost <= old.fit.at.cost
+        {
+            old.fit = *fit;
         }
     }
 
@@ -93,11 +122,10 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
 }
 
 fn same<R: Real, const P: usize>(a: &Fit<R, P>, b: &Fit<R, P>) -> bool {
-    let (low, high) = (a.at.cost.min(b.at.cost), a.at.cost.max(b.at.cost));
-    if high - low < R::of(0.01) * high {
-        return true;
-    }
-    a.x.iter()
-        .zip(&b.x)
-        .all(|(&x, &y)| (x - y).abs() <= R::of(1e-3) * x.abs().max(y.abs()))
+    close(a.at.cost, b.at.cost, R::of(0.01)) || a.x.iter().zip(&b.x).all(|(&x, &y)| close(x, y, R::of(1e-3)))
+}
+
+/// Do two numbers of one sign differ by at most this part of the larger?
+fn close<R: Real>(x: R, y: R, part: R) -> bool {
+    (x - y).abs() <= part * x.abs().max(y.abs())
 }

@@ -1,6 +1,7 @@
 //! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of eight rows (Eq. 15-17).
 
 use crate::brdf::{Brdf, Params, has, parameters, slot};
+use crate::fresnel::Index;
 use crate::geometry::{Block, LANES};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::real::Real;
@@ -11,6 +12,10 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
+    /// cos theta_d nearest to the peak of each lobe.
+    peaks: [[R; 1]; 2],
+    nearest: [R; 2],
+    pub(crate) finest: R,
 }
 
 impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
@@ -19,7 +24,37 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     /// The scan whose observations are in `blocks`.
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
-        Scan { blocks }
+        let mut peaks = [[R::ONE]; 2];
+        let mut finest = R::MAX;
+        let mut tan2_nearest = [R::ZERO; 2];
+        for lobe in 0..2 {
+            // The three smallest tan^2 theta_h.
+            let mut nearest = [R::MAX; 3];
+            for block in blocks {
+                for lane in 0..LANES {
+                    let mut tan2 = block.tan2_theta_h[lobe][lane];
+                    if block.weight[lane] > R::ZERO {
+                        if tan2 < nearest[0] {
+                            peaks[lobe] = [block.cos_theta_d[lobe][lane]];
+                        }
+                        for place in &mut nearest {
+                            if tan2 < *place {
+                                core::mem::swap(place, &mut tan2);
+                            }
+                        }
+                    }
+                }
+            }
+            finest = finest.min(nearest[2]);
+            tan2_nearest[lobe] = nearest[0];
+        }
+        let finest = R::of(0.3) * finest.sqrt();
+        Scan {
+            blocks,
+            peaks,
+            nearest: tan2_nearest,
+            finest,
+        }
     }
 
     /// Its observations.
@@ -33,10 +68,10 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         let mut all = params.to_array();
         all[5] *= all[5];
         for (index, value) in all.into_iter().enumerate() {
-            if has(TERMS, index) {
-                if let Some(place) = x.get_mut(slot(TERMS, index)) {
-                    *place = value;
-                }
+            if has(TERMS, index)
+                && let Some(place) = x.get_mut(slot(TERMS, index))
+            {
+                *place = value;
             }
         }
         x
@@ -107,6 +142,37 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         total(&squares)
     }
 
+    /// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        if !has(TERMS, 4) {
+            return to;
+        }
+        let (old, change, new) = (Self::expand(x), Self::expand(step), Self::expand(&to));
+        let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
+        let from = Index::new(old.n, old.kappa).lanes::<2, 1, true>(&self.peaks, 0..2);
+        let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
+        // Height over rho F: exp(-tan^2 theta_h / m^2) / m^2 at the sample nearest to the peak, as the ratio of new to old.
+        let (inverse, inverse_new) = (R::ONE / old.m, R::ONE / new.m.max(R::MIN_POSITIVE));
+        let mut bent = to;
+        for lobe in 0..2 {
+            if has(TERMS, 1 + lobe) {
+                let k = slot(TERMS, 1 + lobe);
+                let tan2 = self.nearest[lobe];
+                let slope = R::of(2.0) * (tan2 * inverse * inverse - R::ONE) * inverse * change.m;
+                let f = from.f[lobe][0];
+                let amplitude = f * (to[k] + x[k] * slope)
+                    + x[k] * (from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2);
+                let sharper = inverse_new * inverse_new / (inverse * inverse);
+                let exponent = tan2 * (inverse * inverse - inverse_new * inverse_new);
+                let f = there.f[lobe][0] * sharper * exponent.max(-R::LIFT).min(R::LIFT).exp();
+                if amplitude > R::ZERO && f > R::TINY {
+                    bent[k] = amplitude / f;
+                }
+            }
+        }
+        bent
+    }
+
     #[inline(always)]
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
@@ -117,9 +183,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             let model = brdf.rows::<LANES, true>(block);
             let residual = residuals(block, &model.ln_f);
             let mut rows = [[R::ZERO; LANES]; P];
-            for index in 0..6 {
-                if has(TERMS, index) {
-                    rows[slot(TERMS, index)] = model.gradient[index];
+            for (index, derivative) in model.gradient.iter().enumerate() {
+                if has(TERMS, index)
+                    && let Some(row) = rows.get_mut(slot(TERMS, index))
+                {
+                    *row = *derivative;
                 }
             }
             accumulate(&mut squares, &residual, &residual);

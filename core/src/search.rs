@@ -1,5 +1,7 @@
 //! The search for the global optimum: the paper's, and a faster one.
 
+use core::ops::Range;
+
 use heapless::Vec;
 
 use crate::lm::{self, Bounds, Fit, Options, Problem};
@@ -8,23 +10,33 @@ use crate::real::Real;
 use crate::start;
 
 /// Capacity of the table of minima of a search.
-pub const MINIMA: usize = 64;
-/// Candidates of the default method, if nothing else is asked for.
-pub const CANDIDATES: u32 = 128;
+pub const MINIMA: usize = 32;
 /// Starts of the paper's method (section 3).
 pub const PAPER_STARTS: u32 = 250;
+/// The default method makes at most this many candidates, if nothing else is asked for.
+pub const CANDIDATES: u32 = 384;
 
-/// Candidates that get a short fit.
-const SHORT: usize = 24;
-/// Passes of a short fit.
-const SHORT_PASSES: u32 = 7;
-/// Short fits that are brought to convergence.
-const LONG: usize = 8;
+/// Candidates of a round.
+const ROUND: u32 = 64;
+/// How many of them go on, and until how many passes of a fit, stage by stage; the last converge.
+const STAGES: [(usize, u32); 3] = [(16, 3), (8, 6), (4, u32::MAX)];
+/// Candidates like the best minimum, in the last round.
+const VARIATIONS: u32 = 32;
+/// Their stages.
+const VARIATION_STAGES: [(usize, u32); 2] = [(6, 5), (2, u32::MAX)];
+/// Most candidates that go on from a round.
+const KEPT: usize = 16;
+/// Independent fits that must have ended in the best minimum before the search stops.
+const ENOUGH_HITS: u32 = 2;
+/// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
+const ROUGH: f64 = 1e-8;
 
 /// A problem that can propose good starts.
 pub trait Scene<R, const P: usize>: Problem<R, P> {
     /// Candidate `i` of the sequence of `seed`; one pass as cheap as [`Problem::cost`].
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64) -> [R; P];
+    ///
+    /// With `like`, only what decides between the minima near that point is varied.
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P];
 }
 
 /// How many evaluations were made.
@@ -80,7 +92,7 @@ pub fn paper<R: Real, const P: usize>(
     Found { minima, evaluations }
 }
 
-/// The default method: candidates by cost, short fits of the best, convergence of the best of those.
+/// The default method; `candidates` limits the number of candidates, not counting the variations.
 pub fn search<R: Real, const P: usize>(
     scene: &impl Scene<R, P>,
     bounds: &Bounds<R, P>,
@@ -88,38 +100,103 @@ pub fn search<R: Real, const P: usize>(
     candidates: u32,
     options: &Options<R>,
 ) -> Found<R, P> {
-    let mut evaluations = Evaluations::default();
-    let mut best: Vec<(R, u64, [R; P]), SHORT> = Vec::new();
-    for i in 0..candidates as u64 {
-        let x = scene.candidate(bounds, seed, i);
-        let cost = scene.cost(&x);
-        evaluations.cost += 2;
-        let place = best.iter().position(|other| cost < other.0).unwrap_or(best.len());
-        if best.is_full() {
-            if place >= best.len() {
-                continue;
+    let mut found = Found {
+        minima: Minima::default(),
+        evaluations: Evaluations::default(),
+    };
+    let rough = Options {
+        cost_tolerance: options.cost_tolerance.max(R::of(ROUGH)),
+        ..*options
+    };
+    let search = Search {
+        scene,
+        bounds,
+        seed,
+        options: &rough,
+    };
+    let mut made = 0;
+    while made < candidates.max(1) && found.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS) {
+        let end = made.saturating_add(ROUND).min(candidates.max(1));
+        search.round(made..end, None, &STAGES, &mut found);
+        made = end;
+    }
+    if let Some(best) = found.minima.best().map(|best| best.fit.x) {
+        search.round(0..VARIATIONS, Some(&best), &VARIATION_STAGES, &mut found);
+    }
+    if let Some(best) = found.minima.best_mut() {
+        let before = best.fit.passes;
+        best.fit.stop = None;
+        best.fit.run(scene, bounds, options, u32::MAX);
+        found.evaluations.linearize += best.fit.passes - before;
+    }
+    found
+}
+
+struct Search<'a, R, S, const P: usize> {
+    scene: &'a S,
+    bounds: &'a Bounds<R, P>,
+    seed: u64,
+    options: &'a Options<R>,
+}
+
+impl<R: Real, S: Scene<R, P>, const P: usize> Search<'_, R, S, P> {
+    /// Candidates by cost, short fits of the best, convergence of the best of those.
+    fn round(&self, indices: Range<u32>, like: Option<&[R; P]>, stages: &[(usize, u32)], found: &mut Found<R, P>) {
+        let keep = stages[0].0;
+        let mut best: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
+        for i in indices {
+            let x = self.scene.candidate(self.bounds, self.seed, u64::from(i), like);
+            let cost = self.scene.cost(&x);
+            found.evaluations.cost += 2;
+            let place = best.iter().position(|other| cost < other.0).unwrap_or(best.len());
+            if best.len() >= keep {
+                if place >= keep {
+                    continue;
+                }
+                best.pop();
             }
-            best.pop();
+            let _ = best.insert(place, (cost, i, x));
         }
-        let _ = best.insert(place, (cost, i, x));
-    }
-    let mut fits: Vec<(Fit<R, P>, u64), SHORT> = Vec::new();
-    for &(_, i, x) in &best {
-        let mut fit = Fit::begin(scene, bounds, x, options);
-        fit.run(scene, bounds, options, SHORT_PASSES);
-        let place = fits
-            .iter()
-            .position(|(other, _)| fit.at.cost < other.at.cost)
-            .unwrap_or(fits.len());
-        let _ = fits.insert(place, (fit, i));
-    }
-    let mut minima = Minima::default();
-    for (place, (fit, i)) in fits.iter_mut().enumerate() {
-        if place < LONG {
-            fit.run(scene, bounds, options, u32::MAX);
-            minima.add(fit, *i);
+        let mut fits: Vec<(Fit<R, P>, u32), KEPT> = Vec::new();
+        for &(_, i, x) in &best {
+            let _ = fits.push((Fit::begin(self.scene, self.bounds, x, self.options), i));
         }
-        evaluations.linearize += fit.passes;
+        for &(count, passes) in stages {
+            while fits.len() > count {
+                let dropped = fits.pop();
+                found.evaluations.linearize += dropped.map_or(0, |(fit, _)| fit.passes);
+            }
+            for (fit, i) in fits.iter_mut() {
+                if passes == u32::MAX {
+                    self.converge(fit, u64::from(*i), found);
+                } else {
+                    fit.run(self.scene, self.bounds, self.options, passes);
+                }
+            }
+            sort(&mut fits);
+        }
     }
-    Found { minima, evaluations }
+
+    /// Fits to convergence, or until it is plain that the fit joins a minimum already found.
+    fn converge(&self, fit: &mut Fit<R, P>, start: u64, found: &mut Found<R, P>) {
+        while fit.stop.is_none() && !found.minima.join(fit, start) {
+            let passes = fit.passes + 2;
+            fit.run(self.scene, self.bounds, self.options, passes);
+        }
+        if fit.stop.is_some() {
+            found.minima.add(fit, start);
+        }
+        found.evaluations.linearize += fit.passes;
+    }
+}
+
+/// By cost, stable.
+fn sort<R: Real, const P: usize>(fits: &mut [(Fit<R, P>, u32)]) {
+    for end in 1..fits.len() {
+        let mut place = end;
+        while place > 0 && fits[place].0.at.cost < fits[place - 1].0.at.cost {
+            fits.swap(place, place - 1);
+            place -= 1;
+        }
+    }
 }

@@ -1,6 +1,19 @@
 //! Finds the parameters of microfacet BRDF models from scatterometer scans.
 //!
 //! The mathematics is in [`brdfit_core`]; this crate reads files, chooses what to run, and reports.
+//!
+//! A file becomes a [`input::Measurement`], that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
 
+pub mod cli;
+pub mod columns;
 pub mod engine;
+pub mod error;
+pub mod fit;
+pub mod input;
+pub mod options;
+pub mod output;
+pub mod paper;
+pub mod plot;
+pub mod report;
 pub mod simd;
+pub mod simulate;

@@ -87,12 +87,18 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R
     }
 }
 
-struct Candidate<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a Bounds<R, P>, u64, u64);
+struct Candidate<'a, R, const TERMS: u8, const P: usize>(
+    &'a Scan<'a, R, TERMS, P>,
+    &'a Bounds<R, P>,
+    u64,
+    u64,
+    Option<&'a [R; P]>,
+);
 impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Candidate<'_, R, TERMS, P> {
     type Output = [R; P];
     #[inline(always)]
     fn call(self) -> [R; P] {
-        self.0.candidate(self.1, self.2, self.3)
+        self.0.candidate(self.1, self.2, self.3, self.4)
     }
 }
 
@@ -103,10 +109,13 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.simd.run(Linearize(&self.scan, x))
     }
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        self.scan.bend(x, step, to)
+    }
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64) -> [R; P] {
-        self.simd.run(Candidate(&self.scan, bounds, seed, i))
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
+        self.simd.run(Candidate(&self.scan, bounds, seed, i, like))
     }
 }

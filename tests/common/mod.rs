@@ -10,4 +10,5 @@ pub mod literal;
 pub mod mgh_problems;
 pub mod nist_models;
 pub mod reference;
+pub mod scan;
 pub mod tolerance;

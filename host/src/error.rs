@@ -1,0 +1,113 @@
+//! The one error of the host: what is wrong, where, and what to do about it, in one line.
+
+use std::fmt;
+
+/// Exit code of the program where input, options or files are at fault.
+pub const EXIT_CODE: u8 = 2;
+
+/// Something that the user can put right.
+///
+/// It prints as one line, `file:line:column: what; help`, as far as these are known, and as `error: what; help` where no file is at fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    /// What is wrong.
+    pub what: String,
+    /// The file at fault.
+    pub file: Option<String>,
+    /// The line in it; the first is 1.
+    pub line: Option<u64>,
+    /// The column of the table, not of the text; the first is 1.
+    pub column: Option<u64>,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Error {
+    /// An error that belongs to no file.
+    pub fn new(what: impl Into<String>) -> Self {
+        Error {
+            what: what.into(),
+            file: None,
+            line: None,
+            column: None,
+            help: None,
+        }
+    }
+
+    /// The same error, in `file`.
+    pub fn in_file(mut self, file: impl Into<String>) -> Self {
+        self.file = Some(file.into());
+        self
+    }
+
+    /// The same error, in this line of its file.
+    pub fn at_line(mut self, line: u64) -> Self {
+        self.line = Some(line);
+        self
+    }
+
+    /// The same error, in this column of its line.
+    pub fn at_column(mut self, column: u64) -> Self {
+        self.column = Some(column);
+        self
+    }
+
+    /// The same error, with what to do about it.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A file's name may hold a line break, but the message must stay one line.
+        match &self.file {
+            Some(file) => f.write_str(&file.replace(['\n', '\r'], "?"))?,
+            None => f.write_str("error")?,
+        }
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+            if let Some(column) = self.column {
+                write!(f, ":{column}")?;
+            }
+        }
+        write!(f, ": {}", self.what)?;
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Foreign text inside a message: without line breaks and not too long.
+pub fn shown(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut short: String = text.trim().chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.trim().chars().nth(LONGEST).is_some() {
+        short.push_str("...");
+    }
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prints_as_one_line() {
+        let error = Error::new("the BRDF is -0.1, which has no logarithm")
+            .in_file("scan.csv")
+            .at_line(12)
+            .at_column(3)
+            .help("use --drop-invalid to leave such rows out");
+        assert_eq!(
+            error.to_string(),
+            "scan.csv:12:3: the BRDF is -0.1, which has no logarithm; use --drop-invalid to leave such rows out"
+        );
+        assert_eq!(Error::new("no").to_string(), "error: no");
+        assert_eq!(shown(" a\nb "), "a\\nb");
+    }
+}

@@ -1,0 +1,54 @@
+//! The host writes the lines that firmware writes, from the same source; `tests/firmware/run` compares microcontrollers with the same files.
+//!
+//! `BLESS=1 cargo test --test firmware` writes those files anew.
+
+#[path = "firmware/programs/mod.rs"]
+mod programs;
+
+use std::path::Path;
+
+#[test]
+fn host_writes_the_lines_of_firmware() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/programs");
+    for (name, program) in programs::PROGRAMS {
+        let mut lines = String::new();
+        program(&mut lines).unwrap();
+        let file = folder.join(name).with_extension("out");
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&file, &lines).unwrap();
+        }
+        let expected = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+        for (number, (ours, theirs)) in lines.lines().zip(expected.lines()).enumerate() {
+            assert_eq!(ours, theirs, "{name}.out, line {}", number + 1);
+        }
+        assert_eq!(lines.len(), expected.len(), "{name}.out: number of lines");
+    }
+}
+
+/// Name and version of each package of a lock file.
+fn packages(lock: &str) -> Vec<(&str, &str)> {
+    lock.split("[[package]]")
+        .filter_map(|package| {
+            let field = |key: &str| {
+                let line = package.lines().find_map(|line| line.strip_prefix(key))?;
+                Some(line.trim_start_matches(" = ").trim_matches('"'))
+            };
+            Some((field("name")?, field("version")?))
+        })
+        .collect()
+}
+
+#[test]
+fn host_and_firmware_use_the_same_versions() {
+    let host = packages(include_str!("../Cargo.lock"));
+    let firmware = packages(include_str!("firmware/Cargo.lock"));
+    for name in ["libm", "rand_core", "rand_xoshiro", "heapless"] {
+        let of = |list: &[(&str, &str)]| {
+            list.iter()
+                .find(|package| package.0 == name)
+                .map(|package| package.1.to_owned())
+        };
+        assert!(of(&host).is_some(), "{name} is no longer there");
+        assert_eq!(of(&host), of(&firmware), "{name}: run tests/firmware/run --bless");
+    }
+}

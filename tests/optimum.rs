@@ -1,0 +1,82 @@
+//! A fit with default options reaches the best optimum known, and with it what the noise lets it know of the truth.
+
+use std::path::Path;
+
+use brdfit::engine::{self, FitOptions, Outcome};
+use brdfit_core::brdf::{ALL, Brdf};
+use brdfit_core::geometry::Geometry;
+use brdfit_core::real::Real;
+use brdfit_suite::scan::{data, left_out, number, rows, scan, shared};
+use brdfit_suite::tolerance::{ACTUAL_M, ACTUAL_RHO_D, IDEAL_MSE2, IDEAL_RMS_LN, OPTIMUM_MSE2};
+
+/// rho_d and m that each synthetic set was made with.
+const ACTUAL: [(f64, f64); 3] = [(0.1, 0.1), (0.2, 0.15), (0.15, 0.005)];
+
+fn fit(path: &Path) -> Outcome {
+    engine::fit(&scan(path), &FitOptions::default()).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Fits the files of a table of known optima and reports all that end above theirs.
+fn reaches(table: &Path, wanted: impl Fn(&str) -> bool, folder: &Path) {
+    let known = rows(table).into_iter().filter(|row| wanted(&row[0]));
+    let mut missed = Vec::new();
+    let mut count = 0;
+    for row in known {
+        let (file, least) = (&row[0], number(&row[2]));
+        let excess = fit(&folder.join(file)).mse2 / least - 1.0;
+        eprintln!("{file}: MSE^2 = best known x (1 {excess:+.1e})");
+        count += 1;
+        if excess.is_nan() || excess > OPTIMUM_MSE2 {
+            missed.push(format!("{file} by {excess:.1e}"));
+        }
+    }
+    assert!(count > 0, "the table has no such file");
+    assert!(missed.is_empty(), "above the best known MSE^2: {}", missed.join(", "));
+}
+
+#[test]
+fn noisy_synthetic_sets_reach_the_best_known() {
+    reaches(&data("optimum.csv"), |file| file.contains("_seed"), &data(""));
+}
+
+#[test]
+fn measured_scans_reach_the_best_known() {
+    let (table, folder) = (shared("reference/optimum.csv"), shared("real"));
+    if !table.exists() || !folder.exists() {
+        return left_out("the fit of measured scans", &folder);
+    }
+    reaches(&table, |file| !file.starts_with("testdata"), &folder);
+}
+
+#[test]
+fn sets_without_noise_are_fitted_exactly() {
+    for set in 1..=3 {
+        let mse2 = fit(&data(&format!("testdata{set}_ideal.csv"))).mse2;
+        eprintln!("set {set}: MSE^2 = {mse2:.1e}");
+        assert!(mse2 < IDEAL_MSE2, "set {set}: {mse2:e}");
+    }
+}
+
+#[test]
+fn rho_d_m_and_the_curve_come_back() {
+    for (set, (rho_d, m)) in (1..).zip(ACTUAL) {
+        let ideal = scan(&data(&format!("testdata{set}_ideal.csv")));
+        for seed in 1..=3 {
+            let params = fit(&data(&format!("testdata{set}_sym_seed{seed}.csv"))).params;
+            let brdf = Brdf::<f64, ALL>::new(&params);
+            let squares = ideal.iter().map(|sample| {
+                let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
+                let residual = brdf.ln_f(&geometry) - Real::ln(sample.brdf);
+                residual * residual
+            });
+            let rms = (squares.sum::<f64>() / ideal.len() as f64).sqrt();
+            let (off_rho_d, off_m) = (params.rho_d / rho_d - 1.0, params.m / m - 1.0);
+            let found = format!("set {set}, seed {seed}: rho_d {off_rho_d:+.4}, m {off_m:+.4}, ln f {rms:.4}");
+            eprintln!("{found}");
+            assert!(
+                off_rho_d.abs() < ACTUAL_RHO_D && off_m.abs() < ACTUAL_M && rms < IDEAL_RMS_LN,
+                "{found}"
+            );
+        }
+    }
+}

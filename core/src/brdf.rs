@@ -206,7 +206,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
                 rows.gradient[0][lane] = lift[lane] * (share / R::PI);
                 rows.gradient[1][lane] *= share;
                 rows.gradient[2][lane] *= share;
-                rows.gradient[3][lane] = d_m * (two * self.inverse_m) * share;
+                rows.gradient[3][lane] = d_m * share * (two * self.inverse_m);
                 rows.gradient[4][lane] = d_n * share;
                 rows.gradient[5][lane] = d_kappa2 * share;
             }

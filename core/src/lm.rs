@@ -56,7 +56,7 @@ pub struct Options<R> {
     pub step_tolerance: R,
     /// See [`Stop::Passes`].
     pub max_passes: u32,
-    /// First damping, in units of the diagonal of J'J.
+    /// First damping, in units of the largest diagonal of J'J seen so far.
     pub damping: R,
 }
 
@@ -74,7 +74,7 @@ impl<R: Real> Default for Options<R> {
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// Converged: the linear model, without damping, promises a reduction of at most `cost_tolerance * cost`.
+    /// Converged: with a damping of at most 1e-2 the linear model promises a reduction of at most `cost_tolerance * cost`.
     Cost,
     /// Converged as far as rounding allows: no step longer than `step_tolerance` of each parameter lowers the cost.
     Step,
@@ -104,6 +104,8 @@ pub struct Fit<R, const P: usize> {
     pub stop: Option<Stop>,
     damping: R,
     growth: R,
+    /// The largest diagonal of J'J so far: a parameter that the residuals have just lost sight of is not thrown far away (Moré 1978).
+    scale: [R; P],
 }
 
 impl<R: Real, const P: usize> Fit<R, P> {
@@ -119,6 +121,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             stop,
             damping: options.damping,
             growth: R::of(2.0),
+            scale: core::array::from_fn(|i| at.hessian[i][i]),
         }
     }
 
@@ -149,7 +152,10 @@ impl<R: Real, const P: usize> Fit<R, P> {
         for i in 0..P {
             lower[i] = bounds.lower[i] - self.x[i];
             upper[i] = bounds.upper[i] - self.x[i];
-            damped[i][i] = hessian[i][i] + self.damping * hessian[i][i].max(R::MIN_POSITIVE);
+            // A column of J below rounding has no scale of its own, and its step could be of any size: see it as just above.
+            let unseen = R::EPSILON / self.x[i].abs().max(R::ONE);
+            let scale = (unseen * unseen * cost).max(self.scale[i]).max(R::MIN_POSITIVE);
+            damped[i][i] = hessian[i][i] + self.damping * scale;
         }
         let step = boxqp::minimize(&damped, &gradient, &lower, &upper);
         let mut straight = self.x;
@@ -192,13 +198,16 @@ impl<R: Real, const P: usize> Fit<R, P> {
         if trial.cost < cost && is_finite(&trial) {
             self.x = x;
             self.at = trial;
+            for i in 0..P {
+                self.scale[i] = self.scale[i].max(trial.hessian[i][i]);
+            }
             let two = R::of(2.0);
             let wave = two * gain.min(R::ONE) - R::ONE;
             self.damping *= (R::ONE - wave * wave * wave).max(R::of(1.0 / 3.0));
             self.damping = self.damping.max(R::MIN_POSITIVE);
             self.growth = two;
         } else {
-            self.damping = (self.damping * self.growth).min(R::ONE / R::EPSILON / R::EPSILON);
+            self.damping = (self.damping * self.growth).min(R::MAX);
             self.growth = (self.growth + self.growth).min(R::of(1e6));
         }
     }

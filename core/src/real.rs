@@ -59,7 +59,7 @@ pub trait Real:
     fn exp(self) -> Self;
     /// Natural logarithm of a positive normal number, at most 1 ulp; other arguments give an unspecified number.
     fn ln(self) -> Self;
-    /// Reciprocal of the square root of a positive normal number, at most 1 ulp; of 0 a large finite number.
+    /// Reciprocal of the square root of a number from `MIN_POSITIVE` to its reciprocal, at most 1 ulp; other arguments, 0 among them, give an unspecified number or NaN.
     fn rsqrt(self) -> Self;
     /// Square root, by libm; not for the inner loop.
     fn sqrt(self) -> Self;

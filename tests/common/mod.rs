@@ -1,4 +1,14 @@
 //! Shared by the tests.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "oracles may use std's functions; the code under test may not"
+)]
 
+pub mod double_double;
+pub mod dual;
+pub mod literal;
+pub mod mgh_problems;
+pub mod nist_models;
+pub mod reference;
 pub mod scan;
 pub mod tolerance;

@@ -1,0 +1,221 @@
+//! The 27 nonlinear regression sets of NIST's Statistical Reference Datasets: their models, and a fit of each from both certified starts.
+
+use std::f64::consts::PI;
+
+use brdfit_core::lm::{Bounds, Options, Stop, fit};
+
+use crate::dual::{Dual, LeastSquares};
+
+/// How one fit of one set ended.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub name: &'static str,
+    /// Which certified start, 1 or 2.
+    pub start: usize,
+    pub parameters: usize,
+    pub passes: u32,
+    pub stop: Stop,
+    /// Least over the parameters of -log10 |b - certified| / |certified|, at most 11: the certified values have 11 digits.
+    pub lre: f64,
+    /// The same of the residual sum of squares.
+    pub lre_cost: f64,
+}
+
+struct Set<const P: usize> {
+    starts: [[f64; P]; 2],
+    certified: [f64; P],
+    cost: f64,
+    /// y and the predictors.
+    rows: Vec<Vec<f64>>,
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().unwrap_or_else(|_| panic!("not a number: {text}"))
+}
+
+fn read<const P: usize>(name: &str) -> Set<P> {
+    let path = format!("{}/tests/data/nist/{name}.dat", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let lines: Vec<&str> = text.lines().collect();
+    let mut set = Set {
+        starts: [[0.0; P]; 2],
+        certified: [0.0; P],
+        cost: 0.0,
+        rows: Vec::new(),
+    };
+    // "b1 = start1 start2 certified deviation", from line 41.
+    for i in 0..P {
+        let cells: Vec<&str> = lines[40 + i].split_whitespace().collect();
+        assert_eq!(cells[0], format!("b{}", i + 1), "{name}");
+        set.starts[0][i] = number(cells[2]);
+        set.starts[1][i] = number(cells[3]);
+        set.certified[i] = number(cells[4]);
+    }
+    assert!(lines[40 + P].trim().is_empty(), "{name} has more than {P} parameters");
+    let cost = lines
+        .iter()
+        .find_map(|line| line.strip_prefix("Residual Sum of Squares:"));
+    set.cost = number(cost.expect("residual sum of squares").trim());
+    set.rows = lines[60..]
+        .iter()
+        .filter(|line| !line.trim().is_empty())
+        .map(|line| line.split_whitespace().map(number).collect())
+        .collect();
+    set
+}
+
+fn lre(value: f64, certified: f64) -> f64 {
+    let error = (value - certified).abs() / certified.abs();
+    if error.is_nan() {
+        f64::NEG_INFINITY
+    } else {
+        (-error.log10()).min(11.0)
+    }
+}
+
+fn run<const P: usize>(
+    runs: &mut Vec<Run>,
+    options: &Options<f64>,
+    name: &'static str,
+    model: fn(&[f64], &[Dual<P>; P]) -> Dual<P>,
+) {
+    let set = read::<P>(name);
+    let bounds = Bounds {
+        lower: [-f64::MAX; P],
+        upper: [f64::MAX; P],
+    };
+    let problem = LeastSquares(|b: &[Dual<P>; P]| -> Vec<Dual<P>> {
+        set.rows
+            .iter()
+            .map(|row| {
+                let y = if name == "Nelson" { row[0].ln() } else { row[0] };
+                model(&row[1..], b) - y
+            })
+            .collect()
+    });
+    for (i, start) in set.starts.iter().enumerate() {
+        let fit = fit(&problem, &bounds, *start, options);
+        runs.push(Run {
+            name,
+            start: i + 1,
+            parameters: P,
+            passes: fit.passes,
+            stop: fit.stop.expect("a fit that ran to its end has a stop"),
+            lre: (0..P)
+                .map(|k| lre(fit.x[k], set.certified[k]))
+                .fold(f64::INFINITY, f64::min),
+            lre_cost: lre(fit.at.cost, set.cost),
+        });
+    }
+}
+
+/// More damping than by default, for the first starts are far off on purpose (BoxBOD's first leads to a plateau after a bold step), patience for the valleys of MGH10, and steps to the end of rounding.
+pub fn options() -> Options<f64> {
+    Options {
+        damping: 1e3,
+        max_passes: 10_000,
+        cost_tolerance: 1e-20,
+        ..Options::default()
+    }
+}
+
+/// All 54 runs.
+pub fn run_all(options: &Options<f64>) -> Vec<Run> {
+    let mut runs = Vec::new();
+    let all = &mut runs;
+    run::<2>(all, options, "Misra1a", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
+    run::<3>(all, options, "Chwirut2", |x, b| {
+        (-b[0] * x[0]).exp() / (b[1] + b[2] * x[0])
+    });
+    run::<3>(all, options, "Chwirut1", |x, b| {
+        (-b[0] * x[0]).exp() / (b[1] + b[2] * x[0])
+    });
+    run::<6>(all, options, "Lanczos3", lanczos);
+    run::<8>(all, options, "Gauss1", gauss);
+    run::<8>(all, options, "Gauss2", gauss);
+    run::<2>(all, options, "DanWood", |x, b| b[0] * Dual::from(x[0]).pow(b[1]));
+    run::<2>(all, options, "Misra1b", |x, b| {
+        b[0] * (1.0 - (1.0 + b[1] * x[0] / 2.0).powf(-2.0))
+    });
+    run::<5>(all, options, "Kirby2", |x, b| {
+        let x = x[0];
+        (b[0] + (b[1] + b[2] * x) * x) / (1.0 + (b[3] + b[4] * x) * x)
+    });
+    run::<7>(all, options, "Hahn1", cubic_by_cubic);
+    run::<3>(all, options, "Nelson", |x, b| b[0] - b[1] * x[0] * (-b[2] * x[1]).exp());
+    run::<5>(all, options, "MGH17", |x, b| {
+        b[0] + b[1] * (-b[3] * x[0]).exp() + b[2] * (-b[4] * x[0]).exp()
+    });
+    run::<6>(all, options, "Lanczos1", lanczos);
+    run::<6>(all, options, "Lanczos2", lanczos);
+    run::<8>(all, options, "Gauss3", gauss);
+    run::<2>(all, options, "Misra1c", |x, b| {
+        b[0] * (1.0 - (1.0 + 2.0 * b[1] * x[0]).powf(-0.5))
+    });
+    run::<2>(all, options, "Misra1d", |x, b| b[0] * b[1] * x[0] / (1.0 + b[1] * x[0]));
+    run::<4>(all, options, "Roszman1", |x, b| {
+        b[0] - b[1] * x[0] - (b[2] / (x[0] - b[3])).atan() / PI
+    });
+    run::<9>(all, options, "ENSO", |x, b| {
+        let year = 2.0 * PI * x[0] / 12.0;
+        let (first, second) = (2.0 * PI * x[0] / b[3], 2.0 * PI * x[0] / b[6]);
+        b[0] + b[1] * year.cos()
+            + b[2] * year.sin()
+            + b[4] * first.cos()
+            + b[5] * first.sin()
+            + b[7] * second.cos()
+            + b[8] * second.sin()
+    });
+    run::<4>(all, options, "MGH09", |x, b| {
+        b[0] * (x[0] * x[0] + x[0] * b[1]) / (x[0] * x[0] + x[0] * b[2] + b[3])
+    });
+    run::<7>(all, options, "Thurber", cubic_by_cubic);
+    run::<2>(all, options, "BoxBOD", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
+    run::<3>(all, options, "Rat42", |x, b| b[0] / (1.0 + (b[1] - b[2] * x[0]).exp()));
+    run::<3>(all, options, "MGH10", |x, b| b[0] * (b[1] / (x[0] + b[2])).exp());
+    run::<3>(all, options, "Eckerle4", |x, b| {
+        b[0] / b[1] * (-0.5 * ((x[0] - b[2]) / b[1]).square()).exp()
+    });
+    run::<4>(all, options, "Rat43", |x, b| {
+        b[0] / (1.0 + (b[1] - b[2] * x[0]).exp()).pow(1.0 / b[3])
+    });
+    run::<3>(all, options, "Bennett5", |x, b| b[0] * (b[1] + x[0]).pow(-1.0 / b[2]));
+    runs
+}
+
+fn lanczos(x: &[f64], b: &[Dual<6>; 6]) -> Dual<6> {
+    let x = x[0];
+    b[0] * (-b[1] * x).exp() + b[2] * (-b[3] * x).exp() + b[4] * (-b[5] * x).exp()
+}
+
+fn gauss(x: &[f64], b: &[Dual<8>; 8]) -> Dual<8> {
+    let x = x[0];
+    b[0] * (-b[1] * x).exp()
+        + b[2] * (-((x - b[3]) / b[4]).square()).exp()
+        + b[5] * (-((x - b[6]) / b[7]).square()).exp()
+}
+
+fn cubic_by_cubic(x: &[f64], b: &[Dual<7>; 7]) -> Dual<7> {
+    let x = x[0];
+    (b[0] + (b[1] + (b[2] + b[3] * x) * x) * x) / (1.0 + (b[4] + (b[5] + b[6] * x) * x) * x)
+}
+
+/// The runs as a Markdown table.
+pub fn table(runs: &[Run]) -> String {
+    let mut text = String::from(
+        "| set | start | P | LRE parameters | LRE cost | passes | stop |\n|---|--:|--:|--:|--:|--:|---|\n",
+    );
+    for run in runs {
+        let Run {
+            name,
+            start,
+            parameters,
+            passes,
+            stop,
+            lre,
+            lre_cost,
+        } = run;
+        text += &format!("| {name} | {start} | {parameters} | {lre:.1} | {lre_cost:.1} | {passes} | {stop:?} |\n");
+    }
+    text
+}

@@ -2,7 +2,6 @@
 
 use crate::boxqp;
 use crate::brdf::{Brdf, has, slot};
-use crate::geometry::LANES;
 use crate::lm::Bounds;
 use crate::real::Real;
 use crate::residuals::{SUMS, Scan, accumulate, total};
@@ -37,7 +36,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
         }
         if has(TERMS, 5) {
             let k = slot(TERMS, 5);
-            // A third of them without absorption, the others with kappa from 0.01.
+            // A third of them without absorption, the others with kappa from 0.03 to 10.
             let third = R::of(1.0 / 3.0);
             x[k] = if u[2] < third {
                 bounds.lower[k]
@@ -62,12 +61,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut normal = [[[R::ZERO; SUMS]; 3]; 3];
         let mut gradient = [[R::ZERO; SUMS]; 3];
-        let ones = [R::ONE; LANES];
         for block in self.blocks() {
             let columns = brdf.relative_columns(block);
             for i in 0..3 {
                 if has(TERMS, i) {
-                    accumulate(&mut gradient[i], &columns[i], &ones);
+                    accumulate(&mut gradient[i], &columns[i], &block.weight);
                     for j in 0..=i {
                         if has(TERMS, j) {
                             accumulate(&mut normal[i][j], &columns[i], &columns[j]);
@@ -78,12 +76,12 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
         }
         let mut a = [[R::ZERO; 3]; 3];
         let mut g = [R::ZERO; 3];
-        let (mut lower, mut upper) = ([R::ZERO; 3], [R::ZERO; 3]);
+        let (mut lower, mut room) = ([R::ZERO; 3], [R::ZERO; 3]);
         for i in 0..3 {
             a[i][i] = R::ONE;
             if has(TERMS, i) {
-                lower[i] = bounds.lower[slot(TERMS, i)];
-                upper[i] = bounds.upper[slot(TERMS, i)];
+                lower[i] = Self::get(&bounds.lower, i, R::ZERO);
+                room[i] = Self::get(&bounds.upper, i, R::ZERO) - lower[i];
                 for j in 0..=i {
                     a[i][j] = total(&normal[i][j]);
                     a[j][i] = a[i][j];
@@ -98,11 +96,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
                 g[i] += a[i][j] * lower[j];
             }
         }
-        let room = [upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]];
         let step = boxqp::minimize(&a, &g, &[R::ZERO; 3], &room);
         for i in 0..3 {
-            if has(TERMS, i) {
-                x[slot(TERMS, i)] = lower[i] + step[i];
+            if let Some(weight) = x.get_mut(slot(TERMS, i)).filter(|_| has(TERMS, i)) {
+                *weight = lower[i] + step[i];
             }
         }
     }

@@ -85,22 +85,25 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         }
     }
 
+    /// Parameter `index` of [`crate::brdf::NAMES`], or `absent`.
+    #[inline(always)]
+    pub(crate) fn get(x: &[R; P], index: usize, absent: R) -> R {
+        if has(TERMS, index) {
+            x.get(slot(TERMS, index)).copied().unwrap_or(absent)
+        } else {
+            absent
+        }
+    }
+
     #[inline(always)]
     pub(crate) fn expand(x: &[R; P]) -> Params<R> {
-        let get = |index: usize, absent: R| {
-            if has(TERMS, index) {
-                x.get(slot(TERMS, index)).copied().unwrap_or(absent)
-            } else {
-                absent
-            }
-        };
         Params {
-            rho_d: get(0, R::ZERO),
-            rho_s: get(1, R::ZERO),
-            rho_v: get(2, R::ZERO),
-            m: get(3, R::ONE),
-            n: get(4, R::ONE),
-            kappa: get(5, R::ZERO),
+            rho_d: Self::get(x, 0, R::ZERO),
+            rho_s: Self::get(x, 1, R::ZERO),
+            rho_v: Self::get(x, 2, R::ZERO),
+            m: Self::get(x, 3, R::ONE),
+            n: Self::get(x, 4, R::ONE),
+            kappa: Self::get(x, 5, R::ZERO),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `Sample` (angles, BRDF) -> `Observation` (everything that does not depend on the parameters) -> `Block` (8 lanes).
+//! `Sample` (angles, BRDF) -> `Observation` (everything that does not depend on the parameters) -> `Block` (16 lanes).
 
 use crate::real::Real;
 

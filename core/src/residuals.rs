@@ -1,4 +1,4 @@
-//! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of eight rows (Eq. 15-17).
+//! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of sixteen rows (Eq. 15-17).
 
 use crate::brdf::{Brdf, Params, has, parameters, slot};
 use crate::fresnel::Index;

@@ -1,0 +1,188 @@
+//! `brdfit converge`: how fast each method comes how near to the best known fit of a scan.
+
+mod report;
+pub mod study;
+pub mod trace;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::geometry::Sample;
+use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
+
+use crate::cli::Streams;
+use crate::engine::FitError;
+use crate::error::Error;
+use crate::input::{self, Invalid, Measurement, STDIN};
+use crate::output::{deliver, replace_file};
+use crate::paper::embedded;
+use crate::{options, plot};
+
+/// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A pass with derivatives counts as one, a pass without them as half.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
+)]
+pub struct Arguments {
+    /// CSV file with the columns theta_i_deg,theta_s_deg,brdf_per_sr[,delta_phi_deg]; - is standard input
+    #[arg(value_name = "SCAN", required_unless_present = "paper", conflicts_with = "paper")]
+    scan: Option<PathBuf>,
+    /// Takes the paper's three synthetic sets, which are built in
+    #[arg(long)]
+    paper: bool,
+    /// All six parameters that the scan was made with: adds the errors of rho_d, m and the curve
+    #[arg(long, value_name = "NAME=X,...", conflicts_with = "paper")]
+    truth: Option<String>,
+    /// Number of searches by each method, with seeds from 0
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    seeds: u32,
+    /// Form of the result
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Leaves out rows without a valid BRDF or angle, and says how many
+    #[arg(long)]
+    drop_invalid: bool,
+    /// Writes the result to a file
+    #[arg(long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Draws the excess cost over the run time, as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Csv,
+}
+
+/// Runs the subcommand, on one thread.
+///
+/// # Errors
+/// The first thing that is wrong with options, file or scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let truth = arguments.truth.as_deref().map(truth).transpose()?;
+    let measurement = arguments
+        .scan
+        .as_ref()
+        .map(|path| read(path, arguments, streams))
+        .transpose()?;
+    let scans: Vec<(String, Vec<Sample<f64>>, Option<Params<f64>>)> = match &measurement {
+        Some(measurement) => vec![(measurement.file.clone(), measurement.samples.clone(), truth)],
+        None => paper_scans(),
+    };
+    let bar = progress(streams.progress, scans.len(), arguments.seeds);
+    let mut studies = Vec::new();
+    for (name, samples, truth) in &scans {
+        let study = study::study(name, samples, truth.as_ref(), arguments.seeds, || bar.inc(1));
+        let study = study.map_err(|error| explain(measurement.as_ref(), error))?;
+        if !study.best_mse2.is_finite() {
+            return Err(Error::new("no start gives a finite model").in_file(name));
+        }
+        studies.push(study);
+    }
+    bar.finish_and_clear();
+    let text = match arguments.format {
+        Format::Text => report::text(&studies, arguments.seeds),
+        Format::Json => report::json(&studies, arguments.seeds),
+        Format::Csv => report::csv(&studies),
+    };
+    if let Some(path) = &arguments.plot {
+        replace_file(path, plot::converge_svg(&studies, arguments.seeds).as_bytes())?;
+    }
+    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    if let Some(Measurement {
+        file, dropped, samples, ..
+    }) = &measurement
+        && *dropped > 0
+    {
+        let (rows, kept) = (if *dropped == 1 { "row" } else { "rows" }, samples.len());
+        let _ = writeln!(
+            streams.errors,
+            "{file}: left out {dropped} {rows} that are not valid, kept {kept}"
+        );
+    }
+    Ok(())
+}
+
+/// The paper's three sets with the first draw of symmetric noise: name, samples and truth.
+pub fn paper_scans() -> Vec<(String, Vec<Sample<f64>>, Option<Params<f64>>)> {
+    let sets = embedded::SETS.iter();
+    sets.map(|set| {
+        let csv = set.files(crate::paper::Noise::Sym)[0];
+        (
+            set.name.to_string(),
+            embedded::samples(csv),
+            Some(Params::from_array(set.actual)),
+        )
+    })
+    .collect()
+}
+
+fn read(path: &PathBuf, arguments: &Arguments, streams: &mut Streams) -> Result<Measurement, Error> {
+    let invalid = if arguments.drop_invalid {
+        Invalid::Drop
+    } else {
+        Invalid::Refuse
+    };
+    let bytes = if path.as_os_str() == STDIN {
+        input::read_stdin(streams.input)?
+    } else {
+        input::read_file(path)?
+    };
+    input::parse(&path.display().to_string(), &bytes, invalid)
+}
+
+/// Reads `rho_d=0.1,rho_s=10,...`, each parameter once.
+fn truth(list: &str) -> Result<Params<f64>, Error> {
+    let mut values = [None; NAMES.len()];
+    for member in list.split(',') {
+        let one = options::fixed(member).map_err(|error| match error.help {
+            Some(help) => Error::new(error.what).help(help.replace("--fix ", "--truth ")),
+            None => error,
+        })?;
+        if values[one.index].replace(one.lower).is_some() {
+            return Err(Error::new(format!("--truth gives {} twice", NAMES[one.index])).help("give it once"));
+        }
+    }
+    let missing: Vec<&str> = (0..NAMES.len())
+        .filter(|&k| values[k].is_none())
+        .map(|k| NAMES[k])
+        .collect();
+    if !missing.is_empty() {
+        return Err(
+            Error::new(format!("--truth lacks {}", missing.join(", "))).help(format!(
+                "give all of {}; a lobe that is not there has rho 0",
+                NAMES.join(", ")
+            )),
+        );
+    }
+    Ok(Params::from_array(values.map(Option::unwrap_or_default)))
+}
+
+/// Names the line instead of the sample, and what to do.
+fn explain(measurement: Option<&Measurement>, error: FitError) -> Error {
+    let mut plain = Error::new(error.to_string());
+    let Some(measurement) = measurement else { return plain };
+    plain = plain.in_file(&measurement.file);
+    match error {
+        FitError::Sample(index, error) => Error::new(error.to_string())
+            .in_file(&measurement.file)
+            .at_line(measurement.lines[index])
+            .help("leave out the row: f32 can not hold it"),
+        FitError::TooFew(..) => plain.help("measure more"),
+        FitError::Terms(_) => plain,
+    }
+}
+
+fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(scans as u64 * u64::from(seeds) * study::METHODS.len() as u64);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

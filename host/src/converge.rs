@@ -4,7 +4,7 @@ mod report;
 pub mod study;
 pub mod trace;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use brdfit_core::brdf::{NAMES, Params};
@@ -70,13 +70,17 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         .as_ref()
         .map(|path| read(path, arguments, streams))
         .transpose()?;
-    let scans: Vec<(String, Vec<Sample<f64>>, Option<Params<f64>>)> = match &measurement {
-        Some(measurement) => vec![(measurement.file.clone(), measurement.samples.clone(), truth)],
+    let scans: Vec<Subject> = match &measurement {
+        Some(measurement) => vec![Subject {
+            name: measurement.file.clone(),
+            samples: measurement.samples.clone(),
+            truth,
+        }],
         None => paper_scans(),
     };
     let bar = progress(streams.progress, scans.len(), arguments.seeds);
     let mut studies = Vec::new();
-    for (name, samples, truth) in &scans {
+    for Subject { name, samples, truth } in &scans {
         let study = study::study(name, samples, truth.as_ref(), arguments.seeds, || bar.inc(1));
         let study = study.map_err(|error| explain(measurement.as_ref(), error))?;
         if !study.best_mse2.is_finite() {
@@ -108,21 +112,28 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     Ok(())
 }
 
-/// The paper's three sets with the first draw of symmetric noise: name, samples and truth.
-pub fn paper_scans() -> Vec<(String, Vec<Sample<f64>>, Option<Params<f64>>)> {
-    let sets = embedded::SETS.iter();
-    sets.map(|set| {
-        let csv = set.files(crate::paper::Noise::Sym)[0];
-        (
-            set.name.to_string(),
-            embedded::samples(csv),
-            Some(Params::from_array(set.actual)),
-        )
-    })
-    .collect()
+/// A scan to study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// File or set.
+    pub name: String,
+    /// Its samples.
+    pub samples: Vec<Sample<f64>>,
+    /// What it was made with, if that is known.
+    pub truth: Option<Params<f64>>,
 }
 
-fn read(path: &PathBuf, arguments: &Arguments, streams: &mut Streams) -> Result<Measurement, Error> {
+/// The paper's three sets, with the first draw of symmetric noise.
+pub fn paper_scans() -> Vec<Subject> {
+    let subject = |set: &embedded::Source| Subject {
+        name: set.name.to_string(),
+        samples: embedded::samples(set.files(crate::paper::Noise::Sym)[0]),
+        truth: Some(Params::from_array(set.actual)),
+    };
+    embedded::SETS.iter().map(subject).collect()
+}
+
+fn read(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Measurement, Error> {
     let invalid = if arguments.drop_invalid {
         Invalid::Drop
     } else {

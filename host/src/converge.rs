@@ -23,7 +23,7 @@ use crate::{options, plot};
 /// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A pass with derivatives counts as one, a pass without them as half.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
+    after_help = "A pass with derivatives counts as one, a pass without them as half.\nEach search runs three times on one thread, and the fastest counts.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
 )]
 pub struct Arguments {
     /// CSV file with the columns theta_i_deg,theta_s_deg,brdf_per_sr[,delta_phi_deg]; - is standard input

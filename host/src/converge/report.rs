@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::study::{Band, MethodStudy, Point, Reached, ScanStudy, WITHIN};
+use super::study::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
 use crate::output::shortest;
 
 #[derive(Serialize)]
@@ -83,7 +83,7 @@ pub fn text(scans: &[ScanStudy], seeds: u32) -> String {
         // Writing to a String can not fail.
         let _ = writeln!(
             out,
-            "{}: {} samples, least MSE^2 {:.6e}; medians of {seeds} {}, one thread",
+            "{}: {} samples, least MSE^2 {:.6e}; medians of {seeds} {}, one thread, fastest of {REPEATS} runs",
             scan.name,
             scan.samples,
             scan.best_mse2,

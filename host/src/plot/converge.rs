@@ -112,7 +112,7 @@ fn legend(out: &mut String, methods: &[MethodStudy], seeds: u32) {
         svg::text(out, at + 36.0, y, svg::INK, &text);
         at += 36.0 + 7.7 * svg::letters(&text) as f64 + 20.0;
     }
-    let note = format!("line: median of {seeds} seeds, band: 10 to 90 %");
+    let note = format!("median and 10–90 % of {seeds} seeds");
     svg::text(out, at, y, svg::INK, &note);
     out.push_str("</g>");
 }

@@ -30,6 +30,8 @@ const KEPT: usize = 16;
 const ENOUGH_HITS: u32 = 2;
 /// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
 const ROUGH: f64 = 1e-8;
+/// [`Options::max_passes`] of these fits.
+const ROUGH_PASSES: u32 = 100;
 
 /// A problem that can propose good starts.
 pub trait Scene<R, const P: usize>: Problem<R, P> {
@@ -106,6 +108,7 @@ pub fn search<R: Real, const P: usize>(
     };
     let rough = Options {
         cost_tolerance: options.cost_tolerance.max(R::of(ROUGH)),
+        max_passes: options.max_passes.min(ROUGH_PASSES),
         ..*options
     };
     let search = Search {

@@ -42,7 +42,7 @@ pub fn passes(evaluations: Evaluations) -> f64 {
     f64::from(evaluations.linearize) + 0.5 * f64::from(evaluations.cost)
 }
 
-/// Searches on one thread with all terms and watches; of `options` the terms and, for the precision of the clock, the threads do not count.
+/// Searches on one thread with all terms, whatever `options.terms` says, and watches.
 ///
 /// The time begins when the scan stands in blocks, and each new best adds a look at the clock.
 ///

@@ -6,6 +6,7 @@
 
 pub mod cli;
 pub mod columns;
+pub mod converge;
 pub mod engine;
 pub mod error;
 pub mod fit;

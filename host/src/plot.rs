@@ -1,6 +1,7 @@
 //! A scan with its fits as a picture: points, the distinct minima as thin lines, the best as a thick one.
 
 mod axis;
+mod converge;
 mod curve;
 mod svg;
 
@@ -9,6 +10,8 @@ use std::fmt::Write;
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
+
+pub use converge::converge_svg;
 
 use axis::Axis;
 use curve::{curve, mse2};

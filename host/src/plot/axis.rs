@@ -95,6 +95,11 @@ impl Axis {
         }
     }
 
+    /// The same from left to right.
+    pub fn rightwards(self) -> Axis {
+        Axis { upwards: false, ..self }
+    }
+
     /// Where a value lies, in pixels from the left or from the top.
     pub fn pixel(&self, value: f64) -> f64 {
         let share = (value - self.low) / (self.high - self.low);

@@ -1,0 +1,199 @@
+//! `brdfit converge`: how fast each method comes how near to the best known fit of a scan.
+
+mod report;
+pub mod study;
+pub mod trace;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::geometry::Sample;
+use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
+
+use crate::cli::Streams;
+use crate::engine::FitError;
+use crate::error::Error;
+use crate::input::{self, Invalid, Measurement, STDIN};
+use crate::output::{deliver, replace_file};
+use crate::paper::embedded;
+use crate::{options, plot};
+
+/// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A pass with derivatives counts as one, a pass without them as half.\nEach search runs three times on one thread, and the fastest counts.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
+)]
+pub struct Arguments {
+    /// CSV file with the columns theta_i_deg,theta_s_deg,brdf_per_sr[,delta_phi_deg]; - is standard input
+    #[arg(value_name = "SCAN", required_unless_present = "paper", conflicts_with = "paper")]
+    scan: Option<PathBuf>,
+    /// Takes the paper's three synthetic sets, which are built in
+    #[arg(long)]
+    paper: bool,
+    /// All six parameters that the scan was made with: adds the errors of rho_d, m and the curve
+    #[arg(long, value_name = "NAME=X,...", conflicts_with = "paper")]
+    truth: Option<String>,
+    /// Number of searches by each method, with seeds from 0
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    seeds: u32,
+    /// Form of the result
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Leaves out rows without a valid BRDF or angle, and says how many
+    #[arg(long)]
+    drop_invalid: bool,
+    /// Writes the result to a file
+    #[arg(long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Draws the excess cost over the run time, as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Csv,
+}
+
+/// Runs the subcommand, on one thread.
+///
+/// # Errors
+/// The first thing that is wrong with options, file or scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let truth = arguments.truth.as_deref().map(truth).transpose()?;
+    let measurement = arguments
+        .scan
+        .as_ref()
+        .map(|path| read(path, arguments, streams))
+        .transpose()?;
+    let scans: Vec<Subject> = match &measurement {
+        Some(measurement) => vec![Subject {
+            name: measurement.file.clone(),
+            samples: measurement.samples.clone(),
+            truth,
+        }],
+        None => paper_scans(),
+    };
+    let bar = progress(streams.progress, scans.len(), arguments.seeds);
+    let mut studies = Vec::new();
+    for Subject { name, samples, truth } in &scans {
+        let study = study::study(name, samples, truth.as_ref(), arguments.seeds, || bar.inc(1));
+        let study = study.map_err(|error| explain(measurement.as_ref(), error))?;
+        if !study.best_mse2.is_finite() {
+            return Err(Error::new("no start gives a finite model").in_file(name));
+        }
+        studies.push(study);
+    }
+    bar.finish_and_clear();
+    let text = match arguments.format {
+        Format::Text => report::text(&studies, arguments.seeds),
+        Format::Json => report::json(&studies, arguments.seeds),
+        Format::Csv => report::csv(&studies),
+    };
+    if let Some(path) = &arguments.plot {
+        replace_file(path, plot::converge_svg(&studies, arguments.seeds).as_bytes())?;
+    }
+    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    if let Some(Measurement {
+        file, dropped, samples, ..
+    }) = &measurement
+        && *dropped > 0
+    {
+        let (rows, kept) = (if *dropped == 1 { "row" } else { "rows" }, samples.len());
+        let _ = writeln!(
+            streams.errors,
+            "{file}: left out {dropped} {rows} that are not valid, kept {kept}"
+        );
+    }
+    Ok(())
+}
+
+/// A scan to study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// File or set.
+    pub name: String,
+    /// Its samples.
+    pub samples: Vec<Sample<f64>>,
+    /// What it was made with, if that is known.
+    pub truth: Option<Params<f64>>,
+}
+
+/// The paper's three sets, with the first draw of symmetric noise.
+pub fn paper_scans() -> Vec<Subject> {
+    let subject = |set: &embedded::Source| Subject {
+        name: set.name.to_string(),
+        samples: embedded::samples(set.files(crate::paper::Noise::Sym)[0]),
+        truth: Some(Params::from_array(set.actual)),
+    };
+    embedded::SETS.iter().map(subject).collect()
+}
+
+fn read(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Measurement, Error> {
+    let invalid = if arguments.drop_invalid {
+        Invalid::Drop
+    } else {
+        Invalid::Refuse
+    };
+    let bytes = if path.as_os_str() == STDIN {
+        input::read_stdin(streams.input)?
+    } else {
+        input::read_file(path)?
+    };
+    input::parse(&path.display().to_string(), &bytes, invalid)
+}
+
+/// Reads `rho_d=0.1,rho_s=10,...`, each parameter once.
+fn truth(list: &str) -> Result<Params<f64>, Error> {
+    let mut values = [None; NAMES.len()];
+    for member in list.split(',') {
+        let one = options::fixed(member).map_err(|error| match error.help {
+            Some(help) => Error::new(error.what).help(help.replace("--fix ", "--truth ")),
+            None => error,
+        })?;
+        if values[one.index].replace(one.lower).is_some() {
+            return Err(Error::new(format!("--truth gives {} twice", NAMES[one.index])).help("give it once"));
+        }
+    }
+    let missing: Vec<&str> = (0..NAMES.len())
+        .filter(|&k| values[k].is_none())
+        .map(|k| NAMES[k])
+        .collect();
+    if !missing.is_empty() {
+        return Err(
+            Error::new(format!("--truth lacks {}", missing.join(", "))).help(format!(
+                "give all of {}; a lobe that is not there has rho 0",
+                NAMES.join(", ")
+            )),
+        );
+    }
+    Ok(Params::from_array(values.map(Option::unwrap_or_default)))
+}
+
+/// Names the line instead of the sample, and what to do.
+fn explain(measurement: Option<&Measurement>, error: FitError) -> Error {
+    let mut plain = Error::new(error.to_string());
+    let Some(measurement) = measurement else { return plain };
+    plain = plain.in_file(&measurement.file);
+    match error {
+        FitError::Sample(index, error) => Error::new(error.to_string())
+            .in_file(&measurement.file)
+            .at_line(measurement.lines[index])
+            .help("leave out the row: f32 can not hold it"),
+        FitError::TooFew(..) => plain.help("measure more"),
+        FitError::Terms(_) => plain,
+    }
+}
+
+fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(scans as u64 * u64::from(seeds) * study::METHODS.len() as u64);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

@@ -1,0 +1,160 @@
+//! One search with a clock beside it: what it had found, when, and after how many passes.
+
+use std::cell::RefCell;
+use std::time::Instant;
+
+use brdfit_core::brdf::{ALL, Params};
+use brdfit_core::geometry::Sample;
+use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
+use brdfit_core::real::Real;
+use brdfit_core::residuals::Scan;
+use brdfit_core::search::{self, Evaluations, Scene};
+
+use crate::engine::{self, FitError, FitOptions, Method, Precision};
+use crate::simd::FastScan;
+
+/// An improvement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// Passes until here, this one included.
+    pub evaluations: Evaluations,
+    /// Wall time until here, s.
+    pub elapsed_s: f64,
+    /// Where the cost is least so far.
+    pub params: Params<f64>,
+    /// Sum of squared residuals of ln f there, computed in `f64` whatever the number type of the search.
+    pub cost: f64,
+}
+
+/// The course of one search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// Its improvements in order; none if no cost was a number.
+    pub records: Vec<Record>,
+    /// All its passes.
+    pub evaluations: Evaluations,
+    /// All its wall time, s.
+    pub elapsed_s: f64,
+}
+
+/// Work in units of a pass with derivatives: one without them counts half.
+pub fn passes(evaluations: Evaluations) -> f64 {
+    f64::from(evaluations.linearize) + 0.5 * f64::from(evaluations.cost)
+}
+
+/// Searches on one thread with all terms, whatever `options.terms` says, and watches.
+///
+/// The time begins when the scan stands in blocks, and each new best adds a look at the clock.
+///
+/// # Errors
+/// [`FitError`].
+pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
+    match options.precision {
+        Precision::F64 => watch::<f64>(samples, options),
+        Precision::F32 => watch::<f32>(samples, options),
+    }
+}
+
+fn watch<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
+    const P: usize = 6;
+    if samples.len() < P {
+        return Err(FitError::TooFew(samples.len(), P));
+    }
+    let blocks = engine::blocks::<R>(samples)?;
+    let to_real = |p: &Params<f64>| Params::from_array(p.to_array().map(R::of));
+    let bounds = Scan::<R, ALL, P>::bounds(&to_real(&options.lower), &to_real(&options.upper));
+    let (lm, starts) = (Options::default(), options.starts());
+    let begun = Instant::now();
+    let watched = Watched {
+        scene: FastScan {
+            scan: Scan::<R, ALL, P>::new(&blocks),
+            simd: options.simd,
+        },
+        begun,
+        seen: RefCell::new(Seen {
+            evaluations: Evaluations::default(),
+            least: None,
+            steps: Vec::with_capacity(256),
+        }),
+    };
+    match options.method {
+        Method::Default => {
+            search::search(&watched, &bounds, options.seed, starts, &lm);
+        }
+        Method::Paper => {
+            let fit = |i| search::paper_fit(&watched, &bounds, options.seed, i, &lm);
+            search::paper(&watched, &bounds, (0..u64::from(starts)).map(fit), &lm);
+        }
+    }
+    let elapsed_s = begun.elapsed().as_secs_f64();
+    let seen = watched.seen.into_inner();
+
+    let blocks = engine::blocks::<f64>(samples)?;
+    let exact = FastScan {
+        scan: Scan::<f64, ALL, P>::new(&blocks),
+        simd: options.simd,
+    };
+    let record = |&(evaluations, elapsed_s, x): &(Evaluations, f64, [R; P])| {
+        let x = x.map(R::f64);
+        Record {
+            evaluations,
+            elapsed_s,
+            params: Scan::<f64, ALL, P>::params(&x),
+            cost: exact.cost(&x),
+        }
+    };
+    Ok(Trace {
+        records: seen.steps.iter().map(record).collect(),
+        evaluations: seen.evaluations,
+        elapsed_s,
+    })
+}
+
+struct Seen<R, const P: usize> {
+    evaluations: Evaluations,
+    least: Option<R>,
+    steps: Vec<(Evaluations, f64, [R; P])>,
+}
+
+/// A scene that notes each new least cost.
+struct Watched<S, R, const P: usize> {
+    scene: S,
+    begun: Instant,
+    seen: RefCell<Seen<R, P>>,
+}
+
+impl<S, R: Real, const P: usize> Watched<S, R, P> {
+    fn note(&self, x: &[R; P], cost: R, linearize: u32) {
+        let mut seen = self.seen.borrow_mut();
+        seen.evaluations.linearize += linearize;
+        seen.evaluations.cost += 1 - linearize;
+        if cost.is_finite() && seen.least.is_none_or(|least| cost < least) {
+            seen.least = Some(cost);
+            let step = (seen.evaluations, self.begun.elapsed().as_secs_f64(), *x);
+            seen.steps.push(step);
+        }
+    }
+}
+
+impl<S: Problem<R, P>, R: Real, const P: usize> Problem<R, P> for Watched<S, R, P> {
+    fn cost(&self, x: &[R; P]) -> R {
+        let cost = self.scene.cost(x);
+        self.note(x, cost, 0);
+        cost
+    }
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        let at = self.scene.linearize(x);
+        self.note(x, at.cost, 1);
+        at
+    }
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        self.scene.bend(x, step, to)
+    }
+}
+
+impl<S: Scene<R, P>, R: Real, const P: usize> Scene<R, P> for Watched<S, R, P> {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
+        self.seen.borrow_mut().evaluations.cost += 1;
+        self.scene.candidate(bounds, seed, i, like)
+    }
+}

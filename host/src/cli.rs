@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use clap::{Parser, Subcommand};
 
 use crate::error::{EXIT_CODE, Error};
-use crate::{fit, paper, simulate};
+use crate::{fit, paper, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -22,6 +22,7 @@ enum Command {
     Fit(fit::Arguments),
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
+    Stability(stability::Arguments),
 }
 
 /// What the program reads and writes.
@@ -57,6 +58,7 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<(), Error> {
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
+        Command::Stability(arguments) => stability::run(arguments, streams),
     }
 }
 

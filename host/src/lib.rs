@@ -17,3 +17,4 @@ pub mod plot;
 pub mod report;
 pub mod simd;
 pub mod simulate;
+pub mod stability;

@@ -1,6 +1,6 @@
 //! `brdfit paper`: section 4 of the paper, from the synthetic sets that the program carries.
 
-mod embedded;
+pub(crate) mod embedded;
 mod text;
 
 use std::time::Instant;

@@ -29,7 +29,7 @@ struct Scene {
     params: [f64; 6],
 }
 
-const SCENES: [Scene; 8] = [
+const SCENES: [Scene; 9] = [
     Scene {
         name: "dielectric, one angle",
         theta_i_deg: 45.0,
@@ -56,6 +56,12 @@ const SCENES: [Scene; 8] = [
     },
     Scene {
         name: "rho_d and rho_v at 0",
+        theta_i_deg: 30.0,
+        fan: None,
+        params: [0.0, 2.0, 0.0, 0.4, 1.6, 0.3],
+    },
+    Scene {
+        name: "the same down to 1e-17 sr^-1",
         theta_i_deg: 30.0,
         fan: None,
         params: [0.0, 2.0, 0.0, 0.25, 1.6, 0.3],

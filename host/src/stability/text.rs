@@ -17,11 +17,11 @@ pub fn write(cases: &[Assessment]) -> String {
         out.push('\n');
     };
     line(&format!(
-        "{:width$} {:>9} | {:^11} | {:^11} | {:^17} | {:^51}",
+        "{:width$} {:>9} | {:^11} | {:^11} | {:^19} | {:^51}",
         "", "condition", "ln f, ulp", "grad., ulp", "ended by, passes", "f32 against f64"
     ));
     line(&format!(
-        "{:width$} {:>9} | {:>5} {:>5} | {:>5} {:>5} | {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} {:>5} {:>9}",
+        "{:width$} {:>9} | {:>5} {:>5} | {:>5} {:>5} | {:>9} {:>9} | {:>8} {:>8} {:>8} {:>8} {:>5}  {}",
         "case", "of J'J", "f64", "f32", "f64", "f32", "f64", "f32", "excess", "curve", "rho_d", "m", "good", "differ"
     ));
     for case in cases {
@@ -39,12 +39,12 @@ fn row(case: &Assessment, width: usize) -> String {
     };
     let name: String = case.name.chars().take(width).collect();
     let mut row = format!(
-        "{name:width$} {:>9.1e} | {:>5.1} {:>5.1} | {:>5.1} {:>5.1} | {:>8} {:>8}",
+        "{name:width$} {:>9.1e} | {:>5} {:>5} | {:>5} {:>5} | {:>9} {:>9}",
         case.condition,
-        ulp.f64.ln_f,
-        ulp.f32.ln_f,
-        ulp.f64.gradient,
-        ulp.f32.gradient,
+        units(ulp.f64.ln_f),
+        units(ulp.f32.ln_f),
+        units(ulp.f64.gradient),
+        units(ulp.f32.gradient),
         end(&fit.f64),
         end(&fit.f32)
     );
@@ -62,6 +62,15 @@ fn row(case: &Assessment, width: usize) -> String {
         loss.curve_rms_ln, loss.parameters[0].change, loss.parameters[3].change
     );
     row
+}
+
+/// In five columns.
+fn units(ulp: f64) -> String {
+    if ulp < 999.0 {
+        format!("{ulp:.1}")
+    } else {
+        format!("{ulp:.0e}")
+    }
 }
 
 fn end(fit: &Ended) -> String {
@@ -84,6 +93,7 @@ curve      rms difference of ln f between the two fitted curves; 0.01 is 1 % of 
 rho_d, m   f32 over f64, less 1; the difference where f64 has 0.
 good       f32 is good enough: it converged, excess <= {EXCESS:.0e} and curve <= {CURVE_PART} of the rms residual,
            or curve <= {RESOLUTION:.0e}, which is below what a scatterometer resolves.
+           A scan may need more than f32 holds: there a lobe with rho below 1e-16 counts as absent.
 differ     parameters that differ by more than {} %; where the condition is high they are not
            determined by the scan, and differ though the curves do not.
 ",

@@ -7,7 +7,7 @@ pub mod condition;
 pub mod exact;
 mod text;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -74,7 +74,7 @@ pub fn built_in() -> Vec<Assessment> {
         .collect()
 }
 
-fn of_scan(path: &PathBuf, arguments: &Arguments, streams: &mut Streams) -> Result<Assessment, Error> {
+fn of_scan(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Assessment, Error> {
     let bytes = if path.as_os_str() == STDIN {
         input::read_stdin(streams.input)?
     } else {

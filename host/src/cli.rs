@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use clap::{Parser, Subcommand};
 
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, fit, paper, simulate};
+use crate::{converge, fit, paper, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -23,6 +23,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
     Converge(converge::Arguments),
+    Stability(stability::Arguments),
 }
 
 /// What the program reads and writes.
@@ -59,6 +60,7 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<(), Error> {
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
+        Command::Stability(arguments) => stability::run(arguments, streams),
     }
 }
 

@@ -192,7 +192,7 @@ fn fit(measurement: &Measurement, options: &FitOptions) -> Result<Report, Error>
 }
 
 /// Names the line instead of the sample, and what to do.
-fn explain(measurement: &Measurement, error: FitError) -> Error {
+pub(crate) fn explain(measurement: &Measurement, error: FitError) -> Error {
     let plain = |what: String| Error::new(what).in_file(&measurement.file);
     match error {
         // A scan that was read is valid in f64; only rounding to f32 can move a sample out of range.

@@ -18,3 +18,4 @@ pub mod plot;
 pub mod report;
 pub mod simd;
 pub mod simulate;
+pub mod stability;

@@ -1,0 +1,95 @@
+//! `brdfit stability`: how much of the arithmetic's precision reaches the answer, and whether f32 is enough.
+
+pub mod accuracy;
+pub mod assess;
+mod cases;
+pub mod condition;
+pub mod exact;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::Streams;
+use crate::error::Error;
+use crate::fit;
+use crate::input::{self, Invalid, STDIN};
+use crate::output::deliver;
+use assess::{Assessment, assess};
+
+/// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  brdfit stability paint.csv")]
+pub struct Arguments {
+    /// A scan, as `brdfit fit` reads it; - is standard input [default: the built-in cases]
+    #[arg(value_name = "SCAN")]
+    scan: Option<PathBuf>,
+    /// Form of the result
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Leaves out rows without a valid BRDF or angle
+    #[arg(long)]
+    drop_invalid: bool,
+    /// Writes the result to a file
+    #[arg(long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// The scan can not be read or fitted, or the output not written.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let text = match &arguments.scan {
+        None => {
+            let cases = built_in();
+            match arguments.format {
+                Format::Text => text::write(&cases),
+                Format::Json => json(&cases),
+            }
+        }
+        Some(path) => {
+            let case = of_scan(path, arguments, streams)?;
+            match arguments.format {
+                Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
+                Format::Json => json(&case),
+            }
+        }
+    };
+    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+}
+
+/// The assessment of every built-in case.
+pub fn built_in() -> Vec<Assessment> {
+    let cases = cases::all();
+    let each = cases.iter().map(|case| assess(case.name, &case.samples));
+    each.map(|case| case.expect("the built-in cases are valid in both number types"))
+        .collect()
+}
+
+fn of_scan(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Assessment, Error> {
+    let bytes = if path.as_os_str() == STDIN {
+        input::read_stdin(streams.input)?
+    } else {
+        input::read_file(path)?
+    };
+    let invalid = if arguments.drop_invalid {
+        Invalid::Drop
+    } else {
+        Invalid::Refuse
+    };
+    let measurement = input::parse(&path.display().to_string(), &bytes, invalid)?;
+    assess(&measurement.file, &measurement.samples).map_err(|error| fit::explain(&measurement, error))
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    // Only maps with other keys than strings, and failing writers, can make this fail.
+    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+}

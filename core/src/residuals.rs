@@ -149,13 +149,17 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
         let mut bent = to;
         for lobe in 0..2 {
-            if has(TERMS, 1 + lobe) {
-                let k = slot(TERMS, 1 + lobe);
-                let d_f = from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2;
-                let amplitude = from.f[lobe][0] * to[k] + x[k] * d_f;
-                if amplitude > R::ZERO && there.f[lobe][0] > R::TINY {
-                    bent[k] = amplitude / there.f[lobe][0];
-                }
+            let (Some(rho), Some(&straight), Some(&before)) = (
+                bent.get_mut(slot(TERMS, 1 + lobe)),
+                to.get(slot(TERMS, 1 + lobe)),
+                x.get(slot(TERMS, 1 + lobe)),
+            ) else {
+                continue;
+            };
+            let d_f = from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2;
+            let amplitude = from.f[lobe][0] * straight + before * d_f;
+            if has(TERMS, 1 + lobe) && amplitude > R::ZERO && there.f[lobe][0] > R::TINY {
+                *rho = amplitude / there.f[lobe][0];
             }
         }
         bent

@@ -1,40 +1,14 @@
 //! The command line, called in this process: outputs, the JSON contract, and every error as one line with file, line and exit code 2.
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use brdfit::cli::{Streams, run};
+use brdfit_suite::program::{self, Ran};
 use serde_json::Value;
 use tempfile::TempDir;
 
-struct Ran {
-    code: u8,
-    output: String,
-    errors: String,
-}
-
-fn brdfit_with_input(arguments: &[&str], mut input: &[u8]) -> Ran {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let all = ["brdfit"].iter().chain(arguments).map(OsString::from);
-    let code = run(
-        all,
-        &mut Streams {
-            input: &mut input,
-            output: &mut output,
-            errors: &mut errors,
-            progress: false,
-        },
-    );
-    Ran {
-        code,
-        output: String::from_utf8(output).unwrap(),
-        errors: String::from_utf8(errors).unwrap(),
-    }
-}
-
 fn brdfit(arguments: &[&str]) -> Ran {
-    brdfit_with_input(arguments, b"")
+    program::brdfit(arguments, b"")
 }
 
 /// Runs what must succeed without a word on standard error.
@@ -332,7 +306,7 @@ fn fit_reads_all_that_simulate_writes() {
     .concat();
     for arguments in [&[&SCENE[..], &["--ln"]].concat(), &out_of_plane] {
         let scan = succeed(arguments);
-        let ran = brdfit_with_input(&["fit", "-", "--format", "json"], scan.as_bytes());
+        let ran = program::brdfit(&["fit", "-", "--format", "json"], scan.as_bytes());
         assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
         let found = json(&ran.output);
         assert_eq!(found["file"], "-");

@@ -1,24 +1,12 @@
 //! `brdfit converge`, called in this process: its outputs, that all but times is the same in every run, and its errors.
 
-use std::ffi::OsString;
-
-use brdfit::cli::{Streams, run};
+use brdfit_suite::program;
 use serde_json::Value;
 
-fn brdfit(arguments: &[&str], mut input: &[u8]) -> (u8, String, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let all = ["brdfit", "converge"].iter().chain(arguments).map(OsString::from);
-    let code = run(
-        all,
-        &mut Streams {
-            input: &mut input,
-            output: &mut output,
-            errors: &mut errors,
-            progress: false,
-        },
-    );
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    (code, text(output), text(errors))
+fn brdfit(arguments: &[&str], input: &[u8]) -> (u8, String, String) {
+    let all: Vec<&str> = ["converge"].iter().chain(arguments).copied().collect();
+    let ran = program::brdfit(&all, input);
+    (ran.code, ran.output, ran.errors)
 }
 
 const TRUTH: &str = "rho_d=0.1,rho_s=10,rho_v=0.01,m=0.1,n=3,kappa=1";

@@ -1,26 +1,14 @@
 //! `brdfit stability`: its JSON contract, that all its numbers are numbers, and that every fit converged.
 
-use std::ffi::OsString;
-
-use brdfit::cli::{Streams, run};
+use brdfit_suite::program;
 use brdfit_suite::scan::data;
 use brdfit_suite::tolerance::{self, check};
 use serde_json::Value;
 
-fn brdfit(arguments: &[&str], mut input: &[u8]) -> (u8, String, String) {
-    let (mut output, mut errors) = (Vec::new(), Vec::new());
-    let all = ["brdfit", "stability"].iter().chain(arguments).map(OsString::from);
-    let code = run(
-        all,
-        &mut Streams {
-            input: &mut input,
-            output: &mut output,
-            errors: &mut errors,
-            progress: false,
-        },
-    );
-    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (code, text(output), text(errors))
+fn brdfit(arguments: &[&str], input: &[u8]) -> (u8, String, String) {
+    let all: Vec<&str> = ["stability"].iter().chain(arguments).copied().collect();
+    let ran = program::brdfit(&all, input);
+    (ran.code, ran.output, ran.errors)
 }
 
 fn succeed(arguments: &[&str]) -> String {

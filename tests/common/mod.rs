@@ -9,6 +9,7 @@ pub mod dual;
 pub mod literal;
 pub mod mgh_problems;
 pub mod nist_models;
+pub mod program;
 pub mod random_scenes;
 pub mod reference;
 pub mod scan;

@@ -8,10 +8,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::cli::Streams;
-use crate::engine::{self, FitError, FitOptions, Method, Precision};
+use crate::engine::{self, FitError, FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, Invalid, Measurement, STDIN};
-use crate::options;
+use crate::options::SearchArguments;
 use crate::output::{deliver, replace_file};
 use crate::plot;
 use crate::report::{self, Report};
@@ -23,30 +23,8 @@ pub struct Arguments {
     /// CSV files with the columns theta_i_deg,theta_s_deg,brdf_per_sr[,delta_phi_deg]; - is standard input
     #[arg(required = true, value_name = "SCAN")]
     scans: Vec<PathBuf>,
-    /// How to search: candidates and short fits, or the paper's full fits from uniform starts
-    #[arg(long, value_enum, default_value = "default")]
-    method: MethodName,
-    /// Number of starts [default: the method's own]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    starts: Option<u32>,
-    /// Seed of the starts
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
-    /// Terms of the model, of diffuse,surface,volume,absorbing
-    #[arg(long, value_name = "LIST", default_value = "all")]
-    terms: String,
-    /// Bounds of a parameter, in place of Table 1 of the paper; repeatable
-    #[arg(long, value_name = "NAME=LO:HI")]
-    bounds: Vec<String>,
-    /// Holds a parameter fixed; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
-    fix: Vec<String>,
-    /// Number type of the computation
-    #[arg(long, value_enum, default_value = "f64")]
-    precision: PrecisionName,
-    /// Number of threads, which changes no bit [default: all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[command(flatten)]
+    search: SearchArguments,
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -65,18 +43,6 @@ pub struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum MethodName {
-    Default,
-    Paper,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum PrecisionName {
-    F64,
-    F32,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
 enum Format {
     Text,
     Json,
@@ -88,15 +54,12 @@ enum Format {
 /// # Errors
 /// The first thing that is wrong with options, files or the fit.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let options = fit_options(arguments)?;
+    let options = arguments.search.fit_options()?;
     if arguments.plot.is_some() && arguments.scans.len() > 1 {
         return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
     }
     let measurements = read(arguments, streams)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.map_or(0, usize::from))
-        .build()
-        .map_err(|error| Error::new(format!("no threads: {error}")).help("take fewer --threads"))?;
+    let pool = arguments.search.pool()?;
     let bar = progress(streams.progress, &options, measurements.len());
     let results: Vec<Result<Report, Error>> = pool.install(|| {
         let each = measurements.par_iter();
@@ -131,29 +94,6 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         );
     }
     Ok(())
-}
-
-/// What the arguments ask of the engine.
-fn fit_options(arguments: &Arguments) -> Result<FitOptions, Error> {
-    let mut options = FitOptions {
-        method: match arguments.method {
-            MethodName::Default => Method::Default,
-            MethodName::Paper => Method::Paper,
-        },
-        precision: match arguments.precision {
-            PrecisionName::F64 => Precision::F64,
-            PrecisionName::F32 => Precision::F32,
-        },
-        seed: arguments.seed,
-        starts: arguments.starts,
-        terms: options::terms(&arguments.terms)?,
-        ..FitOptions::default()
-    };
-    let bounds = arguments.bounds.iter().map(|text| options::bounds(text));
-    let fixed = arguments.fix.iter().map(|text| options::fixed(text));
-    let ranges: Vec<options::Range> = bounds.chain(fixed).collect::<Result<_, _>>()?;
-    options::apply(&ranges, options.terms, &mut options.lower, &mut options.upper)?;
-    Ok(options)
 }
 
 /// Reads every scan, before anything is computed.

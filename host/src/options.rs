@@ -1,9 +1,91 @@
 //! What the options of the command line mean to the engine.
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, Params, SURFACE, VOLUME, has};
+use clap::{Args, ValueEnum};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::engine::TERM_SETS;
+use crate::engine::{FitOptions, Method, Precision, TERM_SETS};
 use crate::error::{Error, shown};
+
+/// How to search, with which model and within which bounds: the options that every command that fits has.
+#[derive(Args, Debug)]
+pub struct SearchArguments {
+    /// How to search: candidates and short fits, or the paper's full fits from uniform starts
+    #[arg(long, value_enum, default_value = "default")]
+    method: MethodName,
+    /// Number of starts [default: the method's own]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    starts: Option<u32>,
+    /// Seed of the starts
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Terms of the model, of diffuse,surface,volume,absorbing
+    #[arg(long, value_name = "LIST", default_value = "all")]
+    terms: String,
+    /// Bounds of a parameter, in place of Table 1 of the paper; repeatable
+    #[arg(long, value_name = "NAME=LO:HI")]
+    bounds: Vec<String>,
+    /// Holds a parameter fixed; repeatable
+    #[arg(long, value_name = "NAME=VALUE")]
+    fix: Vec<String>,
+    /// Number type of the computation
+    #[arg(long, value_enum, default_value = "f64")]
+    precision: PrecisionName,
+    /// Number of threads, which changes no bit [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum MethodName {
+    Default,
+    Paper,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PrecisionName {
+    F64,
+    F32,
+}
+
+impl SearchArguments {
+    /// What the arguments ask of the engine.
+    ///
+    /// # Errors
+    /// Terms or bounds that make no sense.
+    pub fn fit_options(&self) -> Result<FitOptions, Error> {
+        let mut options = FitOptions {
+            method: match self.method {
+                MethodName::Default => Method::Default,
+                MethodName::Paper => Method::Paper,
+            },
+            precision: match self.precision {
+                PrecisionName::F64 => Precision::F64,
+                PrecisionName::F32 => Precision::F32,
+            },
+            seed: self.seed,
+            starts: self.starts,
+            terms: terms(&self.terms)?,
+            ..FitOptions::default()
+        };
+        let ranges = self.bounds.iter().map(|text| bounds(text));
+        let fixed = self.fix.iter().map(|text| fixed(text));
+        let ranges: Vec<Range> = ranges.chain(fixed).collect::<Result<_, _>>()?;
+        apply(&ranges, options.terms, &mut options.lower, &mut options.upper)?;
+        Ok(options)
+    }
+
+    /// The threads to compute on.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn pool(&self) -> Result<ThreadPool, Error> {
+        ThreadPoolBuilder::new()
+            .num_threads(self.threads.map_or(0, usize::from))
+            .build()
+            .map_err(|error| Error::new(format!("no threads: {error}")).help("take fewer --threads"))
+    }
+}
 
 /// The terms of the model by name.
 pub const TERMS: [(&str, u8); 4] = [

@@ -32,6 +32,7 @@ fn blocks<R: Real>(samples: &[Sample<f64>]) -> Vec<Block<R>> {
                 theta_s: R::of(sample.theta_s),
                 delta_phi: R::of(sample.delta_phi),
                 brdf: R::of(sample.brdf),
+                weight: R::of(sample.weight),
             };
             Observation::new(&sample).expect("a valid sample")
         })
@@ -240,7 +241,7 @@ fn the_faintest_and_the_brightest() {
 }
 
 #[test]
-fn duplicated_angles_count_twice() {
+fn duplicated_angles_count_twice_as_a_weight_does() {
     let once = simulated(0.8, 5, PAPER);
     let noisy: Vec<_> = once
         .iter()
@@ -253,14 +254,23 @@ fn duplicated_angles_count_twice() {
     let twice: Vec<_> = noisy.iter().chain(&noisy).copied().collect();
     let blocks_of = |samples: &[Sample<f64>]| blocks::<f64>(samples);
     let bounds = Scan::<f64, ALL, 6>::bounds(&params(LOWER), &params(UPPER));
-    let (one, two) = (blocks_of(&noisy), blocks_of(&twice));
+    let heavy: Vec<_> = noisy
+        .iter()
+        .map(|s| Sample {
+            weight: -f64::sqrt(2.0),
+            ..*s
+        })
+        .collect();
+    let [one, two, heavy] = [&noisy, &twice, &heavy].map(|samples| blocks_of(samples));
     let first = Scan::<f64, ALL, 6>::coordinates(&params(PAPER));
     let options = Options::default();
     let one = fit(&Scan::<f64, ALL, 6>::new(&one), &bounds, first, &options);
-    let two = fit(&Scan::<f64, ALL, 6>::new(&two), &bounds, first, &options);
-    let error = (two.at.cost / one.at.cost / 2.0 - 1.0).abs();
-    println!("samples counted twice: {error:.1e}");
-    check(error, tolerance::TWICE);
+    for (what, blocks) in [("twice", &two), ("with weight sqrt 2", &heavy)] {
+        let two = fit(&Scan::<f64, ALL, 6>::new(blocks), &bounds, first, &options);
+        let error = (two.at.cost / one.at.cost / 2.0 - 1.0).abs();
+        println!("samples counted {what}: {error:.1e}");
+        check(error, tolerance::TWICE);
+    }
     // All samples in one direction.
     both(&[Sample::in_plane(0.5, 0.2, 0.03), Sample::in_plane(0.5, 0.2, 0.05)].repeat(10));
 }
@@ -281,7 +291,7 @@ prop_compose! {
         delta_phi in prop_oneof![Just(PI), Just(0.0), -4.0..4.0],
         ln_f in prop_oneof![-7.0..3.0, -69.0..69.0],
     ) -> Sample<f64> {
-        Sample { theta_i, theta_s, delta_phi, brdf: f64::exp(ln_f) }
+        Sample { theta_i, theta_s, delta_phi, brdf: f64::exp(ln_f), weight: 1.0 }
     }
 }
 

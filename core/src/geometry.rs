@@ -16,16 +16,19 @@ pub struct Sample<R> {
     pub delta_phi: R,
     /// Measured BRDF f, sr^-1, above 0.
     pub brdf: R,
+    /// Factor of the sample's residual of ln f, dimensionless; in proportion to 1 / (standard deviation of ln f), or 1. 0 leaves the sample out.
+    pub weight: R,
 }
 
 impl<R: Real> Sample<R> {
-    /// A sample in the plane of incidence.
+    /// A sample in the plane of incidence, with weight 1.
     pub fn in_plane(theta_i: R, theta_s: R, brdf: R) -> Self {
         Sample {
             theta_i,
             theta_s,
             delta_phi: R::PI,
             brdf,
+            weight: R::ONE,
         }
     }
 }
@@ -33,7 +36,7 @@ impl<R: Real> Sample<R> {
 /// Why a [`Sample`] is no valid [`Observation`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleError {
-    /// An angle or the BRDF is NaN or infinite.
+    /// An angle, the BRDF or the weight is NaN or infinite.
     NotFinite,
     /// `theta_i` is negative, or an angle is at or beyond the horizon.
     BeyondHorizon,
@@ -155,17 +158,17 @@ pub struct Observation<R> {
     pub geometry: Geometry<R>,
     /// ln of the measured BRDF in sr^-1.
     pub ln_f: R,
-    /// Factor of the residual, dimensionless, 1 unless set.
+    /// Factor of the residual of ln f, dimensionless, not negative.
     pub weight: R,
 }
 
 impl<R: Real> Observation<R> {
-    /// The observation of a sample, with weight 1.
+    /// The observation of a sample; the sign of its weight does not count.
     ///
     /// # Errors
     /// [`SampleError`] tells what is wrong with the sample.
     pub fn new(sample: &Sample<R>) -> Result<Self, SampleError> {
-        if !sample.brdf.is_finite() {
+        if !(sample.brdf.is_finite() && sample.weight.is_finite()) {
             return Err(SampleError::NotFinite);
         }
         if !(sample.brdf >= R::MIN_POSITIVE) {
@@ -175,7 +178,7 @@ impl<R: Real> Observation<R> {
         Ok(Observation {
             geometry,
             ln_f: sample.brdf.ln(),
-            weight: R::ONE,
+            weight: sample.weight.abs(),
         })
     }
 }

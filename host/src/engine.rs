@@ -214,6 +214,7 @@ pub fn blocks<R: Real>(samples: &[Sample<f64>]) -> Result<Vec<Block<R>>, FitErro
             theta_s: R::of(sample.theta_s),
             delta_phi: R::of(sample.delta_phi),
             brdf: R::of(sample.brdf),
+            weight: R::of(sample.weight),
         };
         observations.push(Observation::new(&sample).map_err(|error| FitError::Sample(index, error))?);
     }

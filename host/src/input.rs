@@ -252,6 +252,7 @@ fn sample(record: &StringRecord, columns: &Columns) -> Result<Row, Error> {
         theta_s: angle_s.to_radians(),
         delta_phi: phi_s.map_or(f64::PI, |phi_s| azimuth(phi_s - phi_i.unwrap_or(0.0))),
         brdf: brdf_linear,
+        weight: 1.0,
     }))
 }
 

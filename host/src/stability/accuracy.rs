@@ -57,6 +57,7 @@ pub fn natural_scale(sample: &Sample<f64>, params: [f64; 6], exact: [f64; 7]) ->
                 theta_s,
                 delta_phi,
                 brdf: 1.0,
+                weight: 1.0,
             };
             model::<f64>(&sample, params).map(|values| (values, moved))
         };

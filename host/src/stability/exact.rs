@@ -166,6 +166,7 @@ mod tests {
                 theta_s: x[1].to_radians(),
                 delta_phi: if x[2] == 180.0 { f64::PI } else { x[2].to_radians() },
                 brdf: 1.0,
+                weight: 1.0,
             };
             for (q, (got, want)) in gradient(&sample, params).into_iter().zip(&x[9..]).enumerate() {
                 // The file's derivatives are differences of terms of order 1 with 60 digits.

@@ -229,6 +229,9 @@ fn json_keeps_its_contract() {
     let keys: Vec<&String> = one.as_object().unwrap().keys().collect();
     let mut contract = vec![
         "file",
+        "scan",
+        "input",
+        "left_out",
         "samples",
         "method",
         "seed",
@@ -430,9 +433,12 @@ fn dropped_rows_are_counted() {
     assert_eq!(ran.code, 0);
     assert_eq!(
         ran.errors,
-        format!("{dirty}: left out 3 rows that are not valid, kept 82\n")
+        format!("{dirty}: kept 82, left out 3 samples: 3 not valid (3 at 30 deg)\n")
     );
-    assert_eq!(json(&ran.output)["parameters"], clean["parameters"]);
+    let fitted = json(&ran.output);
+    assert_eq!(fitted["parameters"], clean["parameters"]);
+    let counts = serde_json::json!([{"reason": "not_valid", "theta_i_deg": 30.0, "samples": 3}]);
+    assert_eq!(fitted["left_out"], counts);
     let hopeless = write(&folder, "hopeless.csv", "theta_i,theta_s,brdf\n1,2,0\n");
     assert!(fail(&["fit", &hopeless, "--drop-invalid"]).contains("none of the 1 rows"));
 }

@@ -4,7 +4,7 @@ mod report;
 pub mod study;
 pub mod trace;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use brdfit_core::brdf::{NAMES, Params};
@@ -13,9 +13,8 @@ use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 
 use crate::cli::Streams;
-use crate::engine::FitError;
 use crate::error::Error;
-use crate::input::{self, Invalid, Measurement, STDIN};
+use crate::input::{self, ReadOptions, left_out};
 use crate::output::{deliver, replace_file};
 use crate::paper::embedded;
 use crate::{options, plot};
@@ -26,7 +25,7 @@ use crate::{options, plot};
     after_help = "A pass with derivatives counts as one, a pass without them as half.\nEach search runs three times on one thread, and the fastest counts.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
 )]
 pub struct Arguments {
-    /// CSV file with the columns theta_i_deg,theta_s_deg,brdf_per_sr[,delta_phi_deg]; - is standard input
+    /// A scan, as `brdfit fit` reads it; - is standard input
     #[arg(value_name = "SCAN", required_unless_present = "paper", conflicts_with = "paper")]
     scan: Option<PathBuf>,
     /// Takes the paper's three synthetic sets, which are built in
@@ -41,15 +40,14 @@ pub struct Arguments {
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Leaves out rows without a valid BRDF or angle, and says how many
-    #[arg(long)]
-    drop_invalid: bool,
     /// Writes the result to a file
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draws the excess cost over the run time, as SVG
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -65,14 +63,13 @@ enum Format {
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let truth = arguments.truth.as_deref().map(truth).transpose()?;
-    let measurement = arguments
-        .scan
-        .as_ref()
-        .map(|path| read(path, arguments, streams))
-        .transpose()?;
+    let measurement = match &arguments.scan {
+        Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
+        None => None,
+    };
     let scans: Vec<Subject> = match &measurement {
         Some(measurement) => vec![Subject {
-            name: measurement.file.clone(),
+            name: measurement.label(),
             samples: measurement.samples.clone(),
             truth,
         }],
@@ -82,7 +79,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let mut studies = Vec::new();
     for Subject { name, samples, truth } in &scans {
         let study = study::study(name, samples, truth.as_ref(), arguments.seeds, || bar.inc(1));
-        let study = study.map_err(|error| explain(measurement.as_ref(), error))?;
+        let study = study.map_err(|error| match &measurement {
+            Some(measurement) => input::explain(measurement, error),
+            None => Error::new(error.to_string()).in_file(name),
+        })?;
         if !study.best_mse2.is_finite() {
             return Err(Error::new("no start gives a finite model").in_file(name));
         }
@@ -98,17 +98,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         replace_file(path, plot::converge_svg(&studies, arguments.seeds).as_bytes())?;
     }
     deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
-    if let Some(Measurement {
-        file, dropped, samples, ..
-    }) = &measurement
-        && *dropped > 0
-    {
-        let (rows, kept) = (if *dropped == 1 { "row" } else { "rows" }, samples.len());
-        let _ = writeln!(
-            streams.errors,
-            "{file}: left out {dropped} {rows} that are not valid, kept {kept}"
-        );
-    }
+    left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
 }
 
@@ -131,20 +121,6 @@ pub fn paper_scans() -> Vec<Subject> {
         truth: Some(Params::from_array(set.actual)),
     };
     embedded::SETS.iter().map(subject).collect()
-}
-
-fn read(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Measurement, Error> {
-    let invalid = if arguments.drop_invalid {
-        Invalid::Drop
-    } else {
-        Invalid::Refuse
-    };
-    let bytes = if path.as_os_str() == STDIN {
-        input::read_stdin(streams.input)?
-    } else {
-        input::read_file(path)?
-    };
-    input::parse(&path.display().to_string(), &bytes, invalid)
 }
 
 /// Reads `rho_d=0.1,rho_s=10,...`, each parameter once.
@@ -172,21 +148,6 @@ fn truth(list: &str) -> Result<Params<f64>, Error> {
         );
     }
     Ok(Params::from_array(values.map(Option::unwrap_or_default)))
-}
-
-/// Names the line instead of the sample, and what to do.
-fn explain(measurement: Option<&Measurement>, error: FitError) -> Error {
-    let mut plain = Error::new(error.to_string());
-    let Some(measurement) = measurement else { return plain };
-    plain = plain.in_file(&measurement.file);
-    match error {
-        FitError::Sample(index, error) => Error::new(error.to_string())
-            .in_file(&measurement.file)
-            .at_line(measurement.lines[index])
-            .help("leave out the row: f32 can not hold it"),
-        FitError::TooFew(..) => plain.help("measure more"),
-        FitError::Terms(_) => plain,
-    }
 }
 
 fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {

@@ -2,10 +2,9 @@
 //!
 //! The mathematics is in [`brdfit_core`]; this crate reads files, chooses what to run, and reports.
 //!
-//! A file becomes a [`input::Measurement`], that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
+//! A file becomes one or more [`input::Measurement`]s, that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
 
 pub mod cli;
-pub mod columns;
 pub mod converge;
 pub mod engine;
 pub mod error;

@@ -9,7 +9,7 @@ use brdfit_core::lm::Stop;
 use serde::Serialize;
 
 use crate::engine::{FitOptions, Method, Minimum, Outcome, Precision};
-use crate::input::Measurement;
+use crate::input::{LeftOut, Measurement, ReadAs, left_out};
 use crate::options::term_names;
 use crate::output::shortest;
 
@@ -18,6 +18,12 @@ use crate::output::shortest;
 pub struct Report {
     /// The scan's file.
     pub file: String,
+    /// Which scan of the file it is, if that has a name.
+    pub scan: Option<String>,
+    /// What the numbers of the file were taken for.
+    pub read_as: ReadAs,
+    /// What was left out of the scan.
+    pub left_out: Vec<LeftOut>,
     /// The part of each angle of incidence, in order of that angle.
     pub angles: Vec<AngleOfIncidence>,
     /// What was asked for.
@@ -44,6 +50,9 @@ impl Report {
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         Report {
             file: measurement.file.clone(),
+            scan: measurement.name.clone(),
+            read_as: measurement.read_as,
+            left_out: measurement.left_out.clone(),
             angles: by_angle(&measurement.samples, &outcome.params),
             options: *options,
             outcome,
@@ -66,7 +75,7 @@ fn by_angle(samples: &[Sample<f64>], params: &Params<f64>) -> Vec<AngleOfInciden
     let one = |group: &[&Sample<f64>]| {
         let squares = group.iter().filter_map(|sample| {
             let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-            let residual = ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf);
+            let residual = sample.weight * (ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf));
             Some(residual * residual)
         });
         AngleOfIncidence {
@@ -108,6 +117,9 @@ fn stop_meaning(stop: Stop) -> &'static str {
 #[derive(Serialize)]
 struct JsonReport<'a> {
     file: &'a str,
+    scan: Option<&'a str>,
+    input: ReadAs,
+    left_out: &'a [LeftOut],
     samples: usize,
     method: &'a str,
     seed: u64,
@@ -169,6 +181,9 @@ fn json_report(report: &Report) -> JsonReport<'_> {
     };
     JsonReport {
         file: &report.file,
+        scan: report.scan.as_deref(),
+        input: report.read_as,
+        left_out: &report.left_out,
         samples: outcome.samples,
         method: method_name(report.options.method),
         seed: report.options.seed,
@@ -202,7 +217,7 @@ pub fn json(reports: &[Report]) -> String {
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(reports: &[Report], minima: bool) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut head = vec!["file", "samples", "method", "seed", "starts", "terms"];
+    let mut head = vec!["file", "scan", "samples", "method", "seed", "starts", "terms"];
     head.extend(["mse2"].iter().chain(&NAMES));
     head.extend(if minima {
         ["minimum", "hits", "first_start"].as_slice()
@@ -216,6 +231,7 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
         let row = |mse2: f64, params: &Params<f64>| {
             let mut row = vec![
                 report.file.clone(),
+                report.scan.clone().unwrap_or_default(),
                 outcome.samples.to_string(),
                 method_name(report.options.method).to_string(),
                 report.options.seed.to_string(),
@@ -260,8 +276,15 @@ fn page(report: &Report, minima: bool) -> String {
     let (outcome, options) = (&report.outcome, &report.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(report.file.clone());
+    line(match &report.scan {
+        Some(scan) => format!("{} [{scan}]", report.file),
+        None => report.file.clone(),
+    });
+    line(format!("  read as    {}", report.read_as));
     line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
+    if let Some(summary) = left_out::summary(&report.left_out) {
+        line(format!("  left out   {summary}"));
+    }
     line(format!(
         "  search     {} of {} starts, seed {}, {}",
         method_name(options.method),

@@ -7,14 +7,13 @@ pub mod condition;
 pub mod exact;
 mod text;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
 use crate::cli::Streams;
 use crate::error::Error;
-use crate::fit;
-use crate::input::{self, Invalid, STDIN};
+use crate::input::{self, ReadOptions, left_out};
 use crate::output::deliver;
 use assess::{Assessment, assess};
 
@@ -28,12 +27,11 @@ pub struct Arguments {
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Leaves out rows without a valid BRDF or angle
-    #[arg(long)]
-    drop_invalid: bool,
     /// Writes the result to a file
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -56,7 +54,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
         Some(path) => {
-            let case = of_scan(path, arguments, streams)?;
+            let measurement = input::read_one(path, &arguments.read, streams.input)?;
+            let case = assess(&measurement.label(), &measurement.samples)
+                .map_err(|error| input::explain(&measurement, error))?;
+            left_out::note(&[measurement], streams.errors);
             match arguments.format {
                 Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
                 Format::Json => json(&case),
@@ -72,21 +73,6 @@ pub fn built_in() -> Vec<Assessment> {
     let each = cases.iter().map(|case| assess(case.name, &case.samples));
     each.map(|case| case.expect("the built-in cases are valid in both number types"))
         .collect()
-}
-
-fn of_scan(path: &Path, arguments: &Arguments, streams: &mut Streams) -> Result<Assessment, Error> {
-    let bytes = if path.as_os_str() == STDIN {
-        input::read_stdin(streams.input)?
-    } else {
-        input::read_file(path)?
-    };
-    let invalid = if arguments.drop_invalid {
-        Invalid::Drop
-    } else {
-        Invalid::Refuse
-    };
-    let measurement = input::parse(&path.display().to_string(), &bytes, invalid)?;
-    assess(&measurement.file, &measurement.samples).map_err(|error| fit::explain(&measurement, error))
 }
 
 fn json(value: &impl serde::Serialize) -> String {

@@ -30,7 +30,7 @@ pub fn mse2(params: &Params<f64>, samples: &[Sample<f64>]) -> f64 {
     let model = Brdf::<f64, ALL>::new(params);
     let squares = samples.iter().filter_map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-        let residual = model.ln_f(&geometry) - Real::ln(sample.brdf);
+        let residual = sample.weight * (model.ln_f(&geometry) - Real::ln(sample.brdf));
         Some(residual * residual)
     });
     squares.sum::<f64>() / (samples.len() * samples.len()) as f64

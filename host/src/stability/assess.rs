@@ -105,9 +105,13 @@ pub fn assess(name: &str, samples: &[Sample<f64>]) -> Result<Assessment, FitErro
     let double = engine::fit(samples, &options)?;
     let precision = Precision::F32;
     let single = engine::fit(samples, &FitOptions { precision, ..options })?;
-    let curve = |params: &Params<f64>| -> Vec<f64> { samples.iter().map(|sample| ln_f(params, sample)).collect() };
+    // All of ln f times the weights of the samples, as the fit sees it.
+    let curve = |params: &Params<f64>| -> Vec<f64> {
+        let each = samples.iter();
+        each.map(|sample| sample.weight * ln_f(params, sample)).collect()
+    };
     let (double_curve, single_curve) = (curve(&double.params), curve(&single.params));
-    let measured: Vec<f64> = samples.iter().map(|sample| Real::ln(sample.brdf)).collect();
+    let measured: Vec<f64> = samples.iter().map(|s| s.weight * Real::ln(s.brdf)).collect();
     let fit = Precisions {
         f64: ended(&double, sum_of_squares(&double_curve, &measured)),
         f32: ended(&single, sum_of_squares(&single_curve, &measured)),
@@ -165,7 +169,7 @@ fn free_columns(samples: &[Sample<f64>], outcome: &Outcome) -> Vec<Vec<f64>> {
     let params = outcome.params.to_array();
     let rows: Vec<[f64; 7]> = samples
         .iter()
-        .filter_map(|sample| model::<f64>(sample, params))
+        .filter_map(|sample| Some(model::<f64>(sample, params)?.map(|x| sample.weight * x)))
         .collect();
     let inside = (0..6).filter(|&k| !outcome.at_bound.contains(&NAMES[k]));
     let columns = inside.map(|k| rows.iter().map(|row| row[1 + k]).collect::<Vec<f64>>());

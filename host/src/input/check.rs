@@ -1,0 +1,362 @@
+//! From a scan as it stands in the file to samples: units, masks, validity, weights.
+
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
+
+use super::Measurement;
+use super::format::Format;
+use super::left_out::{Counts, Reason};
+use super::options::{ReadAs, ReadOptions, Weights};
+use super::raw::{Places, RawScan, Row, Weight};
+use super::units::{Angles, Forward, Quantity};
+use super::weight;
+use crate::error::Error;
+
+/// The measurement in a scan of `file`.
+///
+/// # Errors
+/// Rows that are not valid, if they are not to be left out; no row is left; an angle of incidence is negative.
+pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOptions) -> Result<Measurement, Error> {
+    let read_as = ReadAs {
+        format,
+        angles: options.angles.unwrap_or(scan.angles),
+        quantity: options.quantity.unwrap_or(scan.quantity),
+        forward: options.forward,
+        weighted: false,
+    };
+    let (mut samples, mut lines) = (Vec::new(), Vec::new());
+    let (mut counts, mut faults) = (Counts::default(), Faults::default());
+    let mut weights = weight::Sum::default();
+    for row in scan.rows.iter().step_by(options.thin.unwrap_or(1) as usize) {
+        match sample(row, &scan.places, &read_as, options).map_err(|error| at_line(error, row.line))? {
+            Seen::Valid(sample, kind) => {
+                weights.add(sample.weight, kind);
+                samples.push(sample);
+                lines.push(row.line);
+            }
+            Seen::Masked(reason) => counts.add(reason, degrees(row, &read_as)),
+            Seen::Invalid { what, column } => {
+                counts.add(Reason::NotValid, degrees(row, &read_as));
+                faults.add(row.line, column, what);
+            }
+        }
+    }
+    if faults.count > 0 && !options.drop_invalid {
+        return Err(faults.error());
+    }
+    if samples.is_empty() {
+        let rows = scan.rows.len();
+        return Err(
+            Error::new(format!("none of the {rows} rows is a valid sample")).help("check the columns, units and masks")
+        );
+    }
+    let sigma_ln = weights.normalise(&mut samples);
+    Ok(Measurement {
+        file: file.to_string(),
+        name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
+        read_as: ReadAs {
+            weighted: samples.iter().any(|sample| sample.weight != samples[0].weight),
+            ..read_as
+        },
+        samples,
+        lines,
+        sigma_ln,
+        left_out: counts.list(),
+    })
+}
+
+/// The error with its line, if the file has lines.
+fn at_line(error: Error, line: u64) -> Error {
+    if line > 0 { error.at_line(line) } else { error }
+}
+
+fn degrees(row: &Row, read_as: &ReadAs) -> f64 {
+    read_as.angles.degrees(row.theta_i)
+}
+
+/// What a row holds.
+enum Seen {
+    /// A sample whose weight is not normalised, and where that is from.
+    Valid(Sample<f64>, weight::Source),
+    /// What the user does not want.
+    Masked(Reason),
+    /// Numbers that are no sample.
+    Invalid { what: String, column: Option<u64> },
+}
+
+fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -> Result<Seen, Error> {
+    let invalid = |column: Option<u64>, what: String| Ok(Seen::Invalid { what, column });
+    for (column, name, angle) in [
+        (places.theta_i, "theta_i", row.theta_i),
+        (places.theta_s, "theta_s", row.theta_s),
+        (places.phi, "the azimuth", row.delta_phi),
+    ] {
+        if !angle.is_finite() {
+            return invalid(column, format!("{name} is {angle}, which is no angle"));
+        }
+    }
+    if row.theta_i < 0.0 {
+        let error = Error::new(format!("theta_i is {}, and must not be negative", row.theta_i))
+            .help("turn the plane round: change the signs of both theta_i and theta_s in such rows");
+        return Err(Error {
+            column: places.theta_i,
+            ..error
+        });
+    }
+    let mut sample = Sample {
+        theta_i: read_as.angles.radians(row.theta_i),
+        theta_s: read_as.angles.radians(row.theta_s),
+        delta_phi: read_as.angles.azimuth(row.delta_phi),
+        brdf: 0.0,
+        weight: 1.0,
+    };
+    if read_as.forward == Forward::Negative {
+        sample.theta_s = -sample.theta_s;
+    }
+    if let Some(reason) = masked(&sample, row.value, options) {
+        return Ok(Seen::Masked(reason));
+    }
+    for (column, name, angle, radians) in [
+        (places.theta_i, "theta_i", row.theta_i, sample.theta_i),
+        (places.theta_s, "theta_s", row.theta_s, sample.theta_s),
+    ] {
+        if radians.abs() >= f64::PI / 2.0 {
+            let unit = match read_as.angles {
+                Angles::Deg => "degrees",
+                Angles::Rad => "radians",
+            };
+            return invalid(column, format!("{name} is {angle} {unit}, at or beyond the horizon"));
+        }
+    }
+    sample.brdf = match read_as.quantity.brdf(row.value, sample.theta_s) {
+        Ok(brdf) => brdf,
+        Err(what) => return invalid(places.value, what),
+    };
+    let (weight, source) = match weight(row, read_as.quantity, options) {
+        Ok(known) => known,
+        Err(what) => return invalid(places.weight, what),
+    };
+    let factors = options.weight_angle.iter();
+    let here = factors.filter(|(theta_i, _)| (theta_i.to_radians() - sample.theta_i).abs() < 1e-6);
+    sample.weight = here.fold(weight, |weight, (_, factor)| weight * factor);
+    if sample.weight == 0.0 {
+        return Ok(Seen::Masked(Reason::NoWeight));
+    }
+    Ok(Seen::Valid(sample, source))
+}
+
+/// The reason for which the user does not want a sample.
+fn masked(sample: &Sample<f64>, value: f64, options: &ReadOptions) -> Option<Reason> {
+    // An angle on the edge of a mask is masked, whatever the rounding of radians.
+    const ROUNDING: f64 = 1e-9;
+    let beyond = |largest: f64| sample.theta_i.max(sample.theta_s.abs()) > largest.to_radians() + ROUNDING;
+    if options.max_angle.is_some_and(beyond) {
+        return Some(Reason::MaxAngle);
+    }
+    let near = |window: f64| from_retro(sample) <= Real::sin_cos(window.to_radians() / 2.0).0 + ROUNDING;
+    if options.mask_retro.is_some_and(near) {
+        return Some(Reason::Retro);
+    }
+    if options.max_value.is_some_and(|largest| value >= largest) {
+        return Some(Reason::MaxValue);
+    }
+    None
+}
+
+/// Sine of half the angle between the directions of incidence and of scattering.
+fn from_retro(sample: &Sample<f64>) -> f64 {
+    let half = |angle: f64| Real::sin_cos(angle / 2.0).0;
+    // Signed theta_s with the azimuth of retro, 0.
+    let (across, turned) = (half(sample.theta_i - sample.theta_s), half(sample.delta_phi));
+    let (sin_i, sin_s) = (Real::sin_cos(sample.theta_i).0, Real::sin_cos(sample.theta_s).0);
+    (across * across + sin_i * sin_s * turned * turned).max(0.0).sqrt()
+}
+
+/// The weight of a row, not normalised, and where it is from.
+fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, weight::Source), String> {
+    let known = match options.weights {
+        Weights::File => row.weight,
+        Weights::Equal => Weight::Unknown,
+    };
+    let sigma = match known {
+        Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
+        Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
+        Weight::Factor(factor) => return Err(format!("the weight is {factor}, which is none")),
+        Weight::RelativeSigma(sigma) => sigma,
+        Weight::Sigma(sigma) => match quantity.is_logarithm() {
+            Some(factor) => sigma * factor,
+            None => sigma / row.value,
+        },
+    };
+    let whole = (sigma * sigma + options.sigma_floor * options.sigma_floor).sqrt();
+    if sigma >= 0.0 && whole >= f64::MIN_POSITIVE && whole.is_finite() {
+        Ok((1.0 / whole, weight::Source::Sigma))
+    } else {
+        let what = format!("the relative standard deviation is {sigma}, which gives no weight");
+        Err(what + " (--sigma-floor 0.01 or --weights equal would)")
+    }
+}
+
+/// The rows that are no sample, summed up.
+#[derive(Default)]
+struct Faults {
+    count: usize,
+    first: Option<(u64, Option<u64>, String)>,
+    lines: Vec<String>,
+}
+
+impl Faults {
+    fn add(&mut self, line: u64, column: Option<u64>, what: String) {
+        const LISTED: usize = 8;
+        self.first.get_or_insert((line, column, what));
+        if self.lines.len() < LISTED {
+            self.lines.push(line.to_string());
+        }
+        self.count += 1;
+    }
+
+    /// One line for all of them, at the place of the first.
+    fn error(self) -> Error {
+        let Some((line, column, mut what)) = self.first else {
+            return Error::new("no row is at fault");
+        };
+        if self.count > 1 {
+            let more = if self.count > self.lines.len() { ", ..." } else { "" };
+            let lines = self.lines.join(", ");
+            what += &format!(" ({} rows are not valid, on lines {lines}{more})", self.count);
+        }
+        let error = Error::new(what).help("use --drop-invalid to leave such rows out");
+        at_line(Error { column, ..error }, line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse;
+    use super::*;
+
+    fn read(text: &str, options: &ReadOptions) -> Result<Measurement, Error> {
+        parse("scan.csv", text.as_bytes(), options).map(|mut scans| scans.remove(0))
+    }
+
+    #[test]
+    fn drops_only_what_is_asked_for() {
+        let text = "theta_i,theta_s,brdf\n45,1,-0.1\n45,2,1\n45,90,1\n45,4,nan\n30,5,0\n";
+        let error = read(text, &ReadOptions::default()).unwrap_err();
+        assert_eq!((error.line, error.column), (Some(2), Some(3)));
+        assert!(
+            error.what.contains("4 rows are not valid, on lines 2, 4, 5, 6"),
+            "{error}"
+        );
+        let options = ReadOptions {
+            drop_invalid: true,
+            ..ReadOptions::default()
+        };
+        let scan = read(text, &options).unwrap();
+        assert_eq!(scan.lines, [3]);
+        let counts: Vec<_> = scan.left_out.iter().map(|one| (one.theta_i_deg, one.samples)).collect();
+        assert_eq!(counts, [(30.0, 1), (45.0, 3)]);
+    }
+
+    #[test]
+    fn masks_count_by_angle_of_incidence() {
+        let mut text = String::from("theta_i,theta_s,brdf\n");
+        for theta_i in [30, 60] {
+            for theta_s in -90..=90 {
+                text += &format!("{theta_i},{theta_s},{}\n", if theta_s == theta_i { 5 } else { -1 });
+            }
+        }
+        let options = ReadOptions {
+            mask_retro: Some(6.0),
+            max_angle: Some(85.0),
+            max_value: Some(5.0),
+            drop_invalid: true,
+            ..ReadOptions::default()
+        };
+        assert!(read(&text, &options).unwrap_err().what.contains("none of the 362 rows"));
+        let text = text.replace("-1", "1");
+        let scan = read(&text, &options).unwrap();
+        let counts: Vec<_> = scan
+            .left_out
+            .iter()
+            .map(|one| (one.reason, one.theta_i_deg, one.samples))
+            .collect();
+        let expected = [(Reason::Retro, 13), (Reason::MaxAngle, 10), (Reason::MaxValue, 1)];
+        let expected = expected.map(|(reason, count)| [(reason, 30.0, count), (reason, 60.0, count)]);
+        assert_eq!(counts, expected.concat());
+        assert_eq!(scan.samples.len(), 2 * (181 - 24));
+    }
+
+    #[test]
+    fn the_window_of_retro_is_round() {
+        let angle = |theta_s: f64, delta_phi: f64| {
+            let at = Sample::in_plane(30f64.to_radians(), theta_s.to_radians(), 1.0);
+            from_retro(&Sample {
+                delta_phi: delta_phi.to_radians(),
+                ..at
+            })
+        };
+        let sine = |degrees: f64| Real::sin_cos(degrees.to_radians()).0;
+        assert!((angle(33.0, 0.0) - sine(1.5)).abs() < 1e-15);
+        assert!((angle(-33.0, 180.0) - sine(1.5)).abs() < 1e-15);
+        // At one elevation the azimuth counts by its sine.
+        assert!((angle(30.0, 6.0) - sine(30.0) * sine(3.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn weights_are_normalised() {
+        let text = "theta_i,theta_s,brdf,sigma\n45,1,2,0.2\n45,2,1,0.05\n60,3,1,0.1\n";
+        let scan = read(text, &ReadOptions::default()).unwrap();
+        let sigma_ln = [0.1, 0.05, 0.1];
+        let unit = scan.sigma_ln.unwrap();
+        for (sample, sigma) in scan.samples.iter().zip(sigma_ln) {
+            assert!((sample.weight * sigma / unit - 1.0).abs() < 1e-15);
+        }
+        let mean = scan
+            .samples
+            .iter()
+            .map(|sample| sample.weight * sample.weight)
+            .sum::<f64>()
+            / 3.0;
+        assert!((mean - 1.0).abs() < 1e-15 && scan.read_as.weighted);
+        let equal = ReadOptions {
+            weights: Weights::Equal,
+            ..ReadOptions::default()
+        };
+        let scan = read(text, &equal).unwrap();
+        assert!(scan.samples.iter().all(|sample| sample.weight == 1.0));
+        assert_eq!((scan.sigma_ln, scan.read_as.weighted), (None, false));
+        let by_angle = ReadOptions {
+            weight_angle: vec![(60.0, 0.0), (45.0, 3.0)],
+            ..equal
+        };
+        let scan = read(text, &by_angle).unwrap();
+        assert_eq!((scan.samples.len(), scan.samples[0].weight), (2, 1.0));
+        assert_eq!(scan.left_out[0].reason, Reason::NoWeight);
+    }
+
+    #[test]
+    fn a_standard_deviation_of_zero_is_refused() {
+        let text = "theta_i,theta_s,brdf,sd\n45,1,2,0.2\n45,2,1,0\n";
+        let error = read(text, &ReadOptions::default()).unwrap_err();
+        assert_eq!((error.line, error.column), (Some(3), Some(4)));
+        assert!(error.what.contains("--sigma-floor"), "{error}");
+        let floor = ReadOptions {
+            sigma_floor: 0.1,
+            ..ReadOptions::default()
+        };
+        let scan = read(text, &floor).unwrap();
+        let ratio = scan.samples[1].weight / scan.samples[0].weight;
+        assert!((ratio - 2f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_other_sign_is_turned_round() {
+        let negative = ReadOptions {
+            forward: Forward::Negative,
+            ..ReadOptions::default()
+        };
+        let scan = read("theta_i,theta_s,brdf\n45,-44,2\n", &negative).unwrap();
+        assert_eq!(scan.samples[0].theta_s, 44f64.to_radians());
+    }
+}

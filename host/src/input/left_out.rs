@@ -1,0 +1,106 @@
+//! What a scan had and the fit does not see: why, and how many at which angle of incidence.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use serde::Serialize;
+
+use super::Measurement;
+
+/// Why a row was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reason {
+    /// It has no valid value or angle.
+    NotValid,
+    /// It is near the direction of incidence.
+    Retro,
+    /// An angle is beyond the largest that is wanted.
+    MaxAngle,
+    /// The value is saturated.
+    MaxValue,
+    /// Its weight is 0.
+    NoWeight,
+}
+
+impl Reason {
+    /// What people call it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Reason::NotValid => "not valid",
+            Reason::Retro => "near retro",
+            Reason::MaxAngle => "beyond the largest angle",
+            Reason::MaxValue => "saturated",
+            Reason::NoWeight => "of weight 0",
+        }
+    }
+}
+
+/// How many rows were left out for one reason, at one angle of incidence.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Why.
+    pub reason: Reason,
+    /// The angle of incidence, degrees; NaN (null in JSON) if the row has none.
+    pub theta_i_deg: f64,
+    /// How many.
+    pub samples: usize,
+}
+
+/// Counts them.
+#[derive(Debug, Default)]
+pub struct Counts(BTreeMap<(Reason, u64), LeftOut>);
+
+impl Counts {
+    /// One more.
+    pub fn add(&mut self, reason: Reason, theta_i_deg: f64) {
+        // The bits of numbers that are not negative are in their order.
+        let entry = self.0.entry((reason, theta_i_deg.to_bits())).or_insert(LeftOut {
+            reason,
+            theta_i_deg,
+            samples: 0,
+        });
+        entry.samples += 1;
+    }
+
+    /// In order of reason and angle.
+    pub fn list(self) -> Vec<LeftOut> {
+        self.0.into_values().collect()
+    }
+}
+
+/// One line, such as `52 samples: 52 near retro (13 at theta_i = 10 deg, ...)`; none if nothing was left out.
+pub fn summary(list: &[LeftOut]) -> Option<String> {
+    const LISTED: usize = 8;
+    let total = |list: &[LeftOut]| list.iter().map(|one| one.samples).sum::<usize>();
+    if list.is_empty() {
+        return None;
+    }
+    let reasons = list.chunk_by(|a, b| a.reason == b.reason).map(|group| {
+        let angle = |one: &LeftOut| format!("{} at {}", one.samples, (one.theta_i_deg * 1e4).round() / 1e4);
+        let mut angles: Vec<String> = group.iter().take(LISTED).map(angle).collect();
+        if group.len() > LISTED {
+            angles.push("...".to_string());
+        }
+        format!(
+            "{} {} ({} deg)",
+            total(group),
+            group[0].reason.title(),
+            angles.join(", ")
+        )
+    });
+    let reasons: Vec<String> = reasons.collect();
+    let samples = if total(list) == 1 { "sample" } else { "samples" };
+    Some(format!("{} {samples}: {}", total(list), reasons.join("; ")))
+}
+
+/// Says of each scan what was left out of it.
+pub fn note(measurements: &[Measurement], to: &mut dyn Write) {
+    for measurement in measurements {
+        if let Some(summary) = summary(&measurement.left_out) {
+            let (label, kept) = (measurement.label(), measurement.samples.len());
+            // If even standard error is closed, the result says it too.
+            let _ = writeln!(to, "{label}: kept {kept}, left out {summary}");
+        }
+    }
+}

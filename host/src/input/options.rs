@@ -1,0 +1,130 @@
+//! What the user says about files, and what they were taken for.
+
+use std::fmt;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use super::format::Format;
+use super::units::{Angles, Forward, Quantity};
+
+/// How files are read; all but `input_format` hold for each scan.
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+#[command(next_help_heading = "What the files hold")]
+pub struct ReadOptions {
+    /// Format of the files [default: known by their content]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub input_format: Option<Format>,
+    /// Scans to take, by the name of their column, wavelength or polarisation [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub column: Vec<String>,
+    /// What the values are [default: what the file says, or brdf]
+    #[arg(long, value_enum, value_name = "QUANTITY")]
+    pub quantity: Option<Quantity>,
+    /// Unit of the angles [default: the format's]
+    #[arg(long, value_enum, value_name = "UNIT")]
+    pub angles: Option<Angles>,
+    /// Sign of theta_s on the side of the specular peak
+    #[arg(long, value_enum, value_name = "SIGN", default_value = "positive")]
+    pub forward: Forward,
+    /// Leaves out rows without a valid value or angle, and says how many
+    #[arg(long, help_heading = "What is left out")]
+    pub drop_invalid: bool,
+    /// Leaves out directions within this angle of that of incidence, where a detector blocks the beam, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "What is left out")]
+    pub mask_retro: Option<f64>,
+    /// Leaves out theta_i and theta_s beyond this, degrees
+    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "What is left out")]
+    pub max_angle: Option<f64>,
+    /// Leaves out values from this on, where the detector saturates, in the unit of the file
+    #[arg(long, value_name = "X", help_heading = "What is left out")]
+    pub max_value: Option<f64>,
+    /// Keeps one in N rows
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "What is left out")]
+    pub thin: Option<u32>,
+    /// Where weights come from
+    #[arg(
+        long,
+        value_enum,
+        value_name = "KIND",
+        default_value = "file",
+        help_heading = "Weights"
+    )]
+    pub weights: Weights,
+    /// Relative standard deviation that is added to each in square
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = not_negative, help_heading = "Weights")]
+    pub sigma_floor: f64,
+    /// Factor of the residuals at one angle of incidence; repeatable
+    #[arg(long, value_name = "DEG=FACTOR", value_parser = weight_angle, help_heading = "Weights")]
+    pub weight_angle: Vec<(f64, f64)>,
+}
+
+/// Where weights come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Weights {
+    /// Standard deviations or weights in the file, if it has any
+    #[default]
+    File,
+    /// All samples count the same
+    Equal,
+}
+
+/// What the numbers of a scan were taken for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReadAs {
+    /// The file's format.
+    pub format: Format,
+    /// The unit of its angles.
+    pub angles: Angles,
+    /// What its values are.
+    pub quantity: Quantity,
+    /// The sign of theta_s towards the specular peak.
+    pub forward: Forward,
+    /// True if the samples have different weights.
+    pub weighted: bool,
+}
+
+impl fmt::Display for ReadAs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let angles = match self.angles {
+            Angles::Deg => "degrees",
+            Angles::Rad => "radians",
+        };
+        let (sign, weights) = (
+            match self.forward {
+                Forward::Positive => '+',
+                Forward::Negative => '-',
+            },
+            if self.weighted { ", weighted" } else { "" },
+        );
+        let (format, quantity) = (self.format.title(), self.quantity.title());
+        write!(
+            f,
+            "{format}: {quantity} over {angles}, specular peak at theta_s = {sign}theta_i{weights}"
+        )
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| format!("'{text}' is not a number"))
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        x if x >= 0.0 && x.is_finite() => Ok(x),
+        _ => Err("it must not be negative".to_string()),
+    }
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        x if (0.0..=180.0).contains(&x) => Ok(x),
+        _ => Err("it must be an angle in degrees".to_string()),
+    }
+}
+
+fn weight_angle(text: &str) -> Result<(f64, f64), String> {
+    let (theta_i, factor) = text.split_once('=').ok_or("write DEG=FACTOR, such as 60=0.5")?;
+    Ok((angle(theta_i)?, not_negative(factor)?))
+}

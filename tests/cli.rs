@@ -215,7 +215,7 @@ fn errors_of_options_are_one_line() {
 #[test]
 fn help_fits_a_screen_and_has_examples() {
     assert!(succeed(&["--help"]).lines().count() <= 24);
-    for command in ["fit", "simulate"] {
+    for command in ["fit", "batch", "merge", "simulate", "converge", "stability", "paper"] {
         assert!(succeed(&[command, "--help"]).contains(&format!("Example:\n  brdfit {command} ")));
     }
 }

@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 
 use clap::{Parser, Subcommand};
 
+use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
 use crate::{converge, fit, paper, simulate, stability};
 
@@ -20,6 +21,8 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Fit(fit::Arguments),
+    Batch(batch::Arguments),
+    Merge(merge::Arguments),
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
     Converge(converge::Arguments),
@@ -45,7 +48,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
         Err(error) => return explain(&error, streams),
     };
     match dispatch(&cli.command, streams) {
-        Ok(()) => 0,
+        Ok(code) => code,
         Err(error) => {
             // If even standard error is closed, the exit code remains.
             let _ = writeln!(streams.errors, "{error}");
@@ -54,14 +57,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
     }
 }
 
-fn dispatch(command: &Command, streams: &mut Streams) -> Result<(), Error> {
+fn dispatch(command: &Command, streams: &mut Streams) -> Result<u8, Error> {
     match command {
+        Command::Batch(arguments) => return batch::run(arguments, streams),
+        Command::Merge(arguments) => return merge::run(arguments, streams),
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
-    }
+    }?;
+    Ok(0)
 }
 
 /// Help, the version, or what clap says of wrong usage.

@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
 }
 
 /// Fits one scan.
-fn fit(measurement: &Measurement, options: &FitOptions) -> Result<Report, Error> {
+pub(crate) fn fit(measurement: &Measurement, options: &FitOptions) -> Result<Report, Error> {
     let begun = Instant::now();
     let outcome = engine::fit(&measurement.samples, options);
     let elapsed = begun.elapsed();

@@ -4,12 +4,14 @@
 //!
 //! A file becomes one or more [`input::Measurement`]s, that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
 
+pub mod batch;
 pub mod cli;
 pub mod converge;
 pub mod engine;
 pub mod error;
 pub mod fit;
 pub mod input;
+pub mod interrupt;
 pub mod options;
 pub mod output;
 pub mod paper;

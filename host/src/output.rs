@@ -1,6 +1,7 @@
 //! How results leave the program: numbers with all their digits, files that are whole or not there.
 
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use crate::error::Error;
@@ -20,29 +21,43 @@ pub fn shortest(x: f64) -> String {
 /// # Errors
 /// The folder is missing or not writable, or the disk is full; what stood at `path` is then as before.
 pub fn replace_file(path: &Path, contents: &[u8]) -> Result<(), Error> {
+    replace_with(path, |file| file.write_all(contents))
+}
+
+/// The same for what is written bit by bit.
+///
+/// # Errors
+/// As [`replace_file`], and what `write` fails with; an [`Error`] inside its failure comes out as it is.
+pub fn replace_with(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), Error> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let write = || -> io::Result<()> {
+    let buffered = |file: &File| -> io::Result<()> {
+        let mut buffer = BufWriter::new(file);
+        write(&mut buffer)?;
+        buffer.flush()
+    };
+    let all = || -> io::Result<()> {
         // A device or a pipe, such as /dev/null, is written to and not replaced.
         if path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir()) {
-            return std::fs::OpenOptions::new().write(true).open(path)?.write_all(contents);
+            return buffered(&File::options().write(true).open(path)?);
         }
         let mut builder = tempfile::Builder::new();
         // Private by default; a result is an ordinary file, so the user's mask decides.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.prefix(".brdfit-").tempfile_in(folder)?;
-        file.write_all(contents)?;
+        let file = builder.prefix(".brdfit-").tempfile_in(folder)?;
+        buffered(file.as_file())?;
         file.as_file().sync_all()?;
         file.persist(path)?;
         Ok(())
     };
-    write().map_err(|error| {
-        Error::new(format!("can not be written: {error}"))
+    all().map_err(|error| match error.downcast::<Error>() {
+        Ok(own) => own,
+        Err(error) => Error::new(format!("can not be written: {error}"))
             .in_file(path.display().to_string())
-            .help("check that the folder is there and writable")
+            .help("check that the folder is there and writable"),
     })
 }
 

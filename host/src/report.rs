@@ -30,8 +30,8 @@ pub struct Report {
     pub options: FitOptions,
     /// What came out.
     pub outcome: Outcome,
-    /// Time of the search, without reading the file.
-    pub elapsed: Duration,
+    /// Time of the search, without reading the file; none where every run is to give the same bits.
+    pub elapsed: Option<Duration>,
 }
 
 /// How well the samples of one angle of incidence are fitted.
@@ -56,7 +56,7 @@ impl Report {
             angles: by_angle(&measurement.samples, &outcome.params),
             options: *options,
             outcome,
-            elapsed,
+            elapsed: Some(elapsed),
         }
     }
 }
@@ -132,7 +132,8 @@ struct JsonReport<'a> {
     stop: &'a str,
     minima: Vec<JsonMinimum>,
     evaluations: JsonEvaluations,
-    elapsed_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    elapsed_s: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -199,7 +200,7 @@ fn json_report(report: &Report) -> JsonReport<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
-        elapsed_s: report.elapsed.as_secs_f64(),
+        elapsed_s: report.elapsed.map(|elapsed| elapsed.as_secs_f64()),
     }
 }
 
@@ -222,8 +223,10 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
     head.extend(if minima {
         ["minimum", "hits", "first_start"].as_slice()
     } else {
-        &["rms_ln", "at_bound", "stop", "minima", "cost", "linearize", "elapsed_s"]
+        &["rms_ln", "at_bound", "stop", "minima", "cost", "linearize"]
     });
+    let timed = !minima && reports.iter().any(|report| report.elapsed.is_some());
+    head.extend(timed.then_some("elapsed_s"));
     // Writing to memory does not fail.
     let _ = writer.write_record(&head);
     for report in reports {
@@ -258,8 +261,14 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
                 outcome.minima.len().to_string(),
                 outcome.evaluations.cost.to_string(),
                 outcome.evaluations.linearize.to_string(),
-                shortest(report.elapsed.as_secs_f64()),
             ]);
+            if timed {
+                row.push(
+                    report
+                        .elapsed
+                        .map_or(String::new(), |elapsed| shortest(elapsed.as_secs_f64())),
+                );
+            }
             let _ = writer.write_record(&row);
         }
     }
@@ -330,7 +339,9 @@ fn page(report: &Report, minima: bool) -> String {
         "  passes     {} with derivatives, {} without",
         outcome.evaluations.linearize, outcome.evaluations.cost
     ));
-    line(format!("  time       {:.4} s", report.elapsed.as_secs_f64()));
+    if let Some(elapsed) = report.elapsed {
+        line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
+    }
     if minima {
         page += &minima_table(&outcome.minima);
     }

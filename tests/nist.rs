@@ -18,6 +18,20 @@ fn certified_parameters_from_both_starts() {
     check_digits(0.5 * (lre[26] + lre[27]), tolerance::NIST_MEDIAN_LRE);
 }
 
+/// Lanczos1 is a curve without noise: its certified deviations are those of the last digits of its data.
+#[test]
+fn certified_standard_errors() {
+    let mut lre: Vec<f64> = Vec::new();
+    for run in run_all(&options()) {
+        if run.name != "Lanczos1" {
+            lre.push(run.lre_deviations);
+        }
+    }
+    lre.sort_by(f64::total_cmp);
+    check_digits(lre[0], tolerance::NIST_LEAST_LRE_DEVIATION);
+    check_digits(lre[25], tolerance::NIST_MEDIAN_LRE_DEVIATION);
+}
+
 /// The options of ordinary fits, from starts that are not absurd: more damping or more passes are not what makes the others right.
 #[test]
 fn default_options_from_the_nearer_start() {

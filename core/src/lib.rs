@@ -18,6 +18,7 @@
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
 //! | search | [`search::search`], [`search::paper`] | `search.rs` | section 3 |
 //! | starts worth a fit | [`search::Scene`] | `candidate.rs` | |
+//! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
 
 mod boxqp;
@@ -31,6 +32,7 @@ pub mod real;
 pub mod residuals;
 pub mod search;
 pub mod start;
+pub mod uncertainty;
 
 /// The examples of the README are compiled and run as documentation tests.
 #[cfg(doctest)]

@@ -77,6 +77,21 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
         params
     }
 
+    /// Derivatives of the parameters by the solver's coordinates at `x`: 1, and for kappa 1 / (2 kappa), or 0 at kappa = 0, where there is none.
+    pub fn slopes(x: &[R; P]) -> [R; P] {
+        let mut slopes = [R::ONE; P];
+        if has(TERMS, 5)
+            && let (Some(slope), Some(&kappa2)) = (slopes.get_mut(slot(TERMS, 5)), x.get(slot(TERMS, 5)))
+        {
+            *slope = if kappa2 > R::ZERO {
+                R::of(0.5) / kappa2.sqrt()
+            } else {
+                R::ZERO
+            };
+        }
+        slopes
+    }
+
     /// The bounds on the solver's coordinates.
     pub fn bounds(lower: &Params<R>, upper: &Params<R>) -> Bounds<R, P> {
         Bounds {

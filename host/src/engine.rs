@@ -2,13 +2,14 @@
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, Params, SURFACE, VOLUME, has, slot};
 use brdfit_core::geometry::{Block, LANES, Observation, Sample, SampleError};
-use brdfit_core::lm::{Options, Stop};
+use brdfit_core::lm::{Bounds, Options, Stop};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, CANDIDATES, Evaluations, Found, PAPER_STARTS};
 use rayon::prelude::*;
 
 use crate::simd::{FastScan, Simd};
+use crate::uncertainty::{self, Uncertainty};
 
 /// How the global optimum is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,6 +143,8 @@ pub struct Outcome {
     pub improvement_potential: f64,
     /// How many passes were made.
     pub evaluations: Evaluations,
+    /// What the scan tells about the parameters; computed in `f64` whatever the number type of the fit.
+    pub uncertainty: Uncertainty,
 }
 
 /// Why no fit was made.
@@ -270,7 +273,17 @@ fn run<R: Real, const TERMS: u8, const P: usize>(
         })
         .map(|index| NAMES[index])
         .collect();
+    let blocks = self::blocks::<f64>(samples)?;
+    let exact = FastScan {
+        scan: Scan::<f64, TERMS, P>::new(&blocks),
+        simd: options.simd,
+    };
+    let box64 = Bounds {
+        lower: bounds.lower.map(R::f64),
+        upper: bounds.upper.map(R::f64),
+    };
     Ok(Outcome {
+        uncertainty: uncertainty::at(&exact, &best.x.map(R::f64), &box64, samples.len()),
         samples: samples.len(),
         cost: best.at.cost.f64(),
         mse2: mse2(best.at.cost),

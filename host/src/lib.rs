@@ -20,3 +20,4 @@ pub mod report;
 pub mod simd;
 pub mod simulate;
 pub mod stability;
+pub mod uncertainty;

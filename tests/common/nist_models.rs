@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use brdfit_core::lm::{Bounds, Options, Stop, fit};
+use brdfit_core::lm::{Bounds, Options, Problem, Stop, fit};
+use brdfit_core::uncertainty::Uncertainty;
 
 use crate::dual::{Dual, LeastSquares};
 
@@ -19,12 +20,18 @@ pub struct Run {
     pub lre: f64,
     /// The same of the residual sum of squares.
     pub lre_cost: f64,
+    /// The same of the standard errors of the parameters and of the residual standard deviation.
+    pub lre_deviations: f64,
 }
 
 struct Set<const P: usize> {
     starts: [[f64; P]; 2],
     certified: [f64; P],
+    /// Standard errors of those.
+    deviations: [f64; P],
     cost: f64,
+    /// Residual standard deviation.
+    scale: f64,
     /// y and the predictors.
     rows: Vec<Vec<f64>>,
 }
@@ -40,7 +47,9 @@ fn read<const P: usize>(name: &str) -> Set<P> {
     let mut set = Set {
         starts: [[0.0; P]; 2],
         certified: [0.0; P],
+        deviations: [0.0; P],
         cost: 0.0,
+        scale: 0.0,
         rows: Vec::new(),
     };
     // "b1 = start1 start2 certified deviation", from line 41.
@@ -50,12 +59,15 @@ fn read<const P: usize>(name: &str) -> Set<P> {
         set.starts[0][i] = number(cells[2]);
         set.starts[1][i] = number(cells[3]);
         set.certified[i] = number(cells[4]);
+        set.deviations[i] = number(cells[5]);
     }
     assert!(lines[40 + P].trim().is_empty(), "{name} has more than {P} parameters");
-    let cost = lines
-        .iter()
-        .find_map(|line| line.strip_prefix("Residual Sum of Squares:"));
-    set.cost = number(cost.expect("residual sum of squares").trim());
+    let after = |head: &str| {
+        let found = lines.iter().find_map(|line| line.strip_prefix(head));
+        number(found.unwrap_or_else(|| panic!("{name}: {head}")).trim())
+    };
+    set.cost = after("Residual Sum of Squares:");
+    set.scale = after("Residual Standard Deviation:");
     set.rows = lines[60..]
         .iter()
         .filter(|line| !line.trim().is_empty())
@@ -95,6 +107,7 @@ fn run<const P: usize>(
     });
     for (i, start) in set.starts.iter().enumerate() {
         let fit = fit(&problem, &bounds, *start, options);
+        let known = Uncertainty::new(&problem.linearize(&fit.x), &fit.x, &bounds, set.rows.len());
         runs.push(Run {
             name,
             start: i + 1,
@@ -105,6 +118,9 @@ fn run<const P: usize>(
                 .map(|k| lre(fit.x[k], set.certified[k]))
                 .fold(f64::INFINITY, f64::min),
             lre_cost: lre(fit.at.cost, set.cost),
+            lre_deviations: (0..P)
+                .map(|k| lre(known.held.standard_error(k), set.deviations[k]))
+                .fold(lre(known.scale, set.scale), f64::min),
         });
     }
 }
@@ -214,6 +230,7 @@ pub fn table(runs: &[Run]) -> String {
             stop,
             lre,
             lre_cost,
+            ..
         } = run;
         text += &format!("| {name} | {start} | {parameters} | {lre:.1} | {lre_cost:.1} | {passes} | {stop:?} |\n");
     }

@@ -1,0 +1,125 @@
+//! Uncertainty and derived quantities for the page of a fit.
+
+use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::uncertainty::Place;
+
+use super::Uncertainty;
+use super::words::{percent, undetermined};
+use crate::derived::{Derived, Value};
+
+/// Correlations from this on are listed.
+const STRONG: f64 = 0.9;
+/// Angles of incidence at most.
+const LISTED: usize = 12;
+
+/// What stands behind the value of parameter `index`.
+pub fn remark(index: usize, known: &Uncertainty) -> String {
+    match known.places[index] {
+        Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", short(known.stderr[index])),
+        Some(Place::Inside) | None => String::new(),
+        Some(Place::Lower | Place::Upper) => "  at its bound".into(),
+        Some(Place::Fixed) => "  fixed".into(),
+        Some(Place::Unseen) => "  no sample depends on it".into(),
+    }
+}
+
+/// Lines on what is known, what is not, and what follows.
+pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> Vec<String> {
+    let mut lines = Vec::new();
+    if known.degrees_of_freedom == 0 {
+        lines.push("  known      no standard errors: as many parameters as samples".into());
+        return lines;
+    }
+    lines.push(format!(
+        "  known      residual {}, {} degrees of freedom, condition {}",
+        percent(known.scale),
+        known.degrees_of_freedom,
+        short(known.condition)
+    ));
+    for what in undetermined(params, known, derived) {
+        lines.push(format!("    {}", what.sentence()));
+    }
+    for index in 0..NAMES.len() {
+        let (side, end) = match known.places[index] {
+            Some(Place::Lower) => ("below", "lower"),
+            Some(Place::Upper) => ("above", "upper"),
+            _ => continue,
+        };
+        let (name, push) = (NAMES[index], known.push[index].abs());
+        lines.push(if push < 0.05 {
+            format!("    {name} is on its {end} bound, where the data want it")
+        } else {
+            format!("    {name} is on its {end} bound; the data push {side} it, by {push:.1} standard errors")
+        });
+    }
+    let inside: Vec<usize> = known.inside().collect();
+    let pairs = inside.iter().flat_map(|&i| inside.iter().map(move |&j| (i, j)));
+    let strong: Vec<String> = pairs
+        .filter(|&(i, j)| i < j && known.correlation[i][j].abs() >= STRONG)
+        .map(|(i, j)| format!("{} and {} {:.3}", NAMES[i], NAMES[j], known.correlation[i][j]))
+        .collect();
+    if !strong.is_empty() {
+        lines.push(format!("    correlated: {}", strong.join(", ")));
+    }
+    lines.extend(table(derived));
+    lines
+}
+
+/// One row an angle of incidence.
+fn table(derived: &[Derived]) -> Vec<String> {
+    let row = |cells: [String; 6]| {
+        let [theta_i, rho_s_f, rho_v_f, peak, width, reflectance] = cells;
+        format!("    {theta_i:>7}  {rho_s_f:<19}  {rho_v_f:<19}  {peak:<28}  {width:<15}  {reflectance}")
+            .trim_end()
+            .to_string()
+    };
+    let heads = ["theta_i", "rho_s F", "rho_v F", "lobe's peak, 1/sr at deg", "width, deg", "reflectance"];
+    let mut lines = vec![row(heads.map(String::from))];
+    let none = || "-".to_string();
+    for at in derived.iter().take(LISTED) {
+        let peak = at.peak.as_ref();
+        let width = peak.and_then(|peak| peak.width);
+        let degrees = |value: Value| Value {
+            value: value.value.to_degrees(),
+            stderr: value.stderr.to_degrees(),
+        };
+        let excess = if at.reflectance.value > 1.0 { "  ABOVE 1: more light than falls in" } else { "" };
+        lines.push(row([
+            short(at.theta_i.to_degrees()),
+            at.rho_s_f.map_or_else(none, shown),
+            at.rho_v_f.map_or_else(none, shown),
+            peak.map_or_else(none, |peak| format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees())),
+            width.map_or_else(none, |width| shown(degrees(width))),
+            shown(at.reflectance) + excess,
+        ]));
+    }
+    if derived.len() > LISTED {
+        lines.push(format!("    and {} more angles of incidence, in --format json", derived.len() - LISTED));
+    }
+    lines
+}
+
+/// A value with its standard error, as "0.5123 +- 0.0021".
+fn shown(value: Value) -> String {
+    format!("{} +- {}", four(value.value), short(value.stderr))
+}
+
+/// Two significant digits.
+pub(crate) fn short(x: f64) -> String {
+    significant(x, 1)
+}
+
+fn four(x: f64) -> String {
+    significant(x, 3)
+}
+
+/// One digit and `decimals` more.
+fn significant(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$e}");
+    let rounded: f64 = text.parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-4..1e4).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        text
+    }
+}

@@ -103,7 +103,11 @@ impl<R: Real, const P: usize> Uncertainty<R, P> {
         let inside = places.map(|place| place == Place::Inside);
         let degrees_of_freedom = residuals.saturating_sub(inside.iter().filter(|&&free| free).count());
         let scale = (at.cost / R::of(degrees_of_freedom as f64)).sqrt();
-        let scale = if degrees_of_freedom > 0 { scale } else { R::ONE / R::ZERO };
+        let scale = if degrees_of_freedom > 0 {
+            scale
+        } else {
+            R::ONE / R::ZERO
+        };
         let unseen = places.map(|place| place == Place::Unseen);
         let mut push = [R::ZERO; P];
         for i in 0..P {
@@ -128,12 +132,7 @@ impl<R: Real, const P: usize> Uncertainty<R, P> {
     }
 }
 
-fn place<R: Real, const P: usize>(
-    at: &Linearization<R, P>,
-    x: &[R; P],
-    bounds: &Bounds<R, P>,
-    i: usize,
-) -> Place {
+fn place<R: Real, const P: usize>(at: &Linearization<R, P>, x: &[R; P], bounds: &Bounds<R, P>, i: usize) -> Place {
     let size = x[i].abs().max(R::ONE);
     if bounds.lower[i] >= bounds.upper[i] {
         Place::Fixed

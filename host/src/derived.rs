@@ -47,19 +47,25 @@ pub struct Derived {
     pub reflectance: Value,
 }
 
-/// At each angle of incidence of `samples`, in ascending order.
+/// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
 pub fn at_each_angle(samples: &[Sample<f64>], params: &Params<f64>, known: &Uncertainty) -> Vec<Derived> {
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
     angles.sort_by(f64::total_cmp);
-    angles.dedup();
+    angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
     angles.into_iter().map(|theta_i| at(theta_i, params, known)).collect()
 }
 
 /// At one angle of incidence, radians.
 pub fn at(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Derived {
-    let value = |(value, gradient): (f64, [f64; 6])| Value {
-        value,
-        stderr: known.stderr_of(&gradient),
+    let value = |(value, mut gradient): (f64, [f64; 6])| {
+        for (slope, parameter) in gradient.iter_mut().zip(params.to_array()) {
+            // What a parameter of its own size does not change does not depend on it, however unknown that is.
+            if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
+                *slope = 0.0;
+            }
+        }
+        let stderr = known.stderr_of(&gradient);
+        Value { value, stderr }
     };
     let (f, d_n, d_kappa) = fresnel(Real::sin_cos(theta_i).1, params.n, params.kappa);
     let product = |index: usize| {
@@ -132,7 +138,9 @@ fn brightest(ln_f: &impl Fn(f64) -> f64, theta_i: f64, m: f64) -> f64 {
     grid.retain(|theta_s| theta_s.abs() <= HORIZON);
     grid.sort_by(f64::total_cmp);
     let values: Vec<f64> = grid.iter().map(|&theta_s| ln_f(theta_s)).collect();
-    let best = (0..grid.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0);
+    let best = (0..grid.len())
+        .max_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0);
     let (mut low, mut high) = (grid[best.saturating_sub(1)], grid[(best + 1).min(grid.len() - 1)]);
     for _ in 0..60 {
         let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));

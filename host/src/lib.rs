@@ -7,6 +7,7 @@
 pub mod batch;
 pub mod cli;
 pub mod converge;
+pub mod derived;
 pub mod engine;
 pub mod error;
 pub mod fit;
@@ -16,6 +17,7 @@ pub mod options;
 pub mod output;
 pub mod paper;
 pub mod plot;
+pub mod reflectance;
 pub mod report;
 pub mod simd;
 pub mod simulate;

@@ -8,10 +8,12 @@ use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::Stop;
 use serde::Serialize;
 
+use crate::derived::{self, Derived};
 use crate::engine::{FitOptions, Method, Minimum, Outcome, Precision};
 use crate::input::{LeftOut, Measurement, ReadAs, left_out};
 use crate::options::term_names;
 use crate::output::shortest;
+use crate::uncertainty::{json as known_json, text as known_text};
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
@@ -30,6 +32,8 @@ pub struct Report {
     pub options: FitOptions,
     /// What came out.
     pub outcome: Outcome,
+    /// What follows from it at each angle of incidence.
+    pub derived: Vec<Derived>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
     pub elapsed: Option<Duration>,
 }
@@ -54,6 +58,7 @@ impl Report {
             read_as: measurement.read_as,
             left_out: measurement.left_out.clone(),
             angles: by_angle(&measurement.samples, &outcome.params),
+            derived: derived::at_each_angle(&measurement.samples, &outcome.params, &outcome.uncertainty),
             options: *options,
             outcome,
             elapsed: Some(elapsed),
@@ -129,6 +134,8 @@ struct JsonReport<'a> {
     rms_ln: f64,
     parameters: JsonParameters,
     at_bound: &'a [&'a str],
+    uncertainty: known_json::Known,
+    derived: Vec<known_json::AtAngle>,
     stop: &'a str,
     minima: Vec<JsonMinimum>,
     evaluations: JsonEvaluations,
@@ -194,6 +201,8 @@ fn json_report(report: &Report) -> JsonReport<'_> {
         rms_ln: outcome.rms_ln,
         parameters: json_parameters(&outcome.params),
         at_bound: &outcome.at_bound,
+        uncertainty: known_json::known(&outcome.params, &outcome.uncertainty, &report.derived),
+        derived: report.derived.iter().map(known_json::at_angle).collect(),
         stop: stop_name(outcome.stop),
         minima: outcome.minima.iter().map(minimum).collect(),
         evaluations: JsonEvaluations {
@@ -305,19 +314,11 @@ fn page(report: &Report, minima: bool) -> String {
         },
     ));
     line(format!("  terms      {}", term_names(options.terms).join(", ")));
-    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
     for (index, value) in outcome.params.to_array().into_iter().enumerate() {
-        if !has(options.terms, index) {
-            continue;
+        if has(options.terms, index) {
+            let remark = known_text::remark(index, &outcome.uncertainty);
+            line(format!("    {:<8} {:>13}{remark}", NAMES[index], digits(value)));
         }
-        let remark = if lower[index] == upper[index] {
-            "   fixed"
-        } else if outcome.at_bound.contains(&NAMES[index]) {
-            "   at its bound"
-        } else {
-            ""
-        };
-        line(format!("    {:<8} {:>13}{remark}", NAMES[index], digits(value)));
     }
     line(format!("  MSE^2      {}", digits(outcome.mse2)));
     line(format!(
@@ -341,6 +342,9 @@ fn page(report: &Report, minima: bool) -> String {
     ));
     if let Some(elapsed) = report.elapsed {
         line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
+    }
+    for known in known_text::lines(&outcome.params, &outcome.uncertainty, &report.derived) {
+        line(known);
     }
     if minima {
         page += &minima_table(&outcome.minima);

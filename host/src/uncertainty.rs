@@ -1,5 +1,9 @@
 //! What a scan tells about the parameters of its fit, in the order of their names.
 
+pub mod json;
+pub mod text;
+pub mod words;
+
 use brdfit_core::brdf::{NAMES, has, slot};
 use brdfit_core::lm::{Bounds, Problem};
 use brdfit_core::real::Real;

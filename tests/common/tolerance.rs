@@ -118,3 +118,18 @@ pub const PASSES_NOISY: f64 = 600.0;
 pub const PASSES_IDEAL: f64 = 500.0;
 /// Largest median of the same passes over the 20 fits of a set; measured 40.
 pub const PASSES_MEDIAN: f64 = 45.0;
+
+// Uncertainty: what a scan tells about the parameters.
+
+/// Covariances and correlations of linear problems less those of a literal inverse, relative to the standard errors; measured 1.1e-15.
+pub const COVARIANCE: f64 = 5e-15;
+/// The push over that of a literal inverse, less 1; below 5e-15 where measured.
+pub const PUSH: f64 = 5e-15;
+/// Relative error of a standard error beside two parameters that are one; measured 8.9e-16.
+pub const BESIDE_SINGULAR: f64 = 5e-15;
+/// Directional-hemispherical reflectance over a midpoint rule of 500^2 directions (1000^2 of narrow lobes), less 1; measured 9.6e-5.
+pub const REFLECTANCE: f64 = 2e-4;
+/// Its derivatives but that by m less central differences, relative where above 0.01; measured 3.3e-5.
+pub const REFLECTANCE_GRADIENT: f64 = 1e-4;
+/// That by m less central differences of the midpoint rule of 400^2 directions; measured 1.2e-3.
+pub const REFLECTANCE_BY_M: f64 = 2e-3;

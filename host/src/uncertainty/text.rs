@@ -73,7 +73,14 @@ fn table(derived: &[Derived]) -> Vec<String> {
             .trim_end()
             .to_string()
     };
-    let heads = ["theta_i", "rho_s F", "rho_v F", "lobe's peak, 1/sr at deg", "width, deg", "reflectance"];
+    let heads = [
+        "theta_i",
+        "rho_s F",
+        "rho_v F",
+        "lobe's peak, 1/sr at deg",
+        "width, deg",
+        "reflectance",
+    ];
     let mut lines = vec![row(heads.map(String::from))];
     let none = || "-".to_string();
     for at in derived.iter().take(LISTED) {
@@ -83,18 +90,27 @@ fn table(derived: &[Derived]) -> Vec<String> {
             value: value.value.to_degrees(),
             stderr: value.stderr.to_degrees(),
         };
-        let excess = if at.reflectance.value > 1.0 { "  ABOVE 1: more light than falls in" } else { "" };
+        let excess = if at.reflectance.value > 1.0 {
+            "  ABOVE 1: energy is not conserved"
+        } else {
+            ""
+        };
         lines.push(row([
             short(at.theta_i.to_degrees()),
             at.rho_s_f.map_or_else(none, shown),
             at.rho_v_f.map_or_else(none, shown),
-            peak.map_or_else(none, |peak| format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees())),
+            peak.map_or_else(none, |peak| {
+                format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees())
+            }),
             width.map_or_else(none, |width| shown(degrees(width))),
             shown(at.reflectance) + excess,
         ]));
     }
     if derived.len() > LISTED {
-        lines.push(format!("    and {} more angles of incidence, in --format json", derived.len() - LISTED));
+        lines.push(format!(
+            "    and {} more angles of incidence, in --format json",
+            derived.len() - LISTED
+        ));
     }
     lines
 }

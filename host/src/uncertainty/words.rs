@@ -7,7 +7,7 @@ use super::Uncertainty;
 use crate::derived::Derived;
 
 /// A parameter whose standard error is a larger part of it than this is not determined.
-pub const LOOSE: f64 = 0.3;
+pub const LOOSE: f64 = 0.2;
 /// A product whose standard error is a smaller part of it than this is determined.
 pub const TIGHT: f64 = 0.2;
 
@@ -55,7 +55,11 @@ pub fn undetermined(params: &Params<f64>, known: &Uncertainty, derived: &[Derive
         None | Some(Place::Fixed) => false,
         Some(Place::Unseen) => true,
         Some(_) => {
-            let size = if NAMES[index] == "kappa" { values[index].max(1.0) } else { values[index] };
+            let size = if NAMES[index] == "kappa" {
+                values[index].max(1.0)
+            } else {
+                values[index]
+            };
             size > 0.0 && known.stderr_lifted[index] > LOOSE * size
         }
     };
@@ -63,7 +67,10 @@ pub fn undetermined(params: &Params<f64>, known: &Uncertainty, derived: &[Derive
     let mut found = Vec::new();
     let index_is_open = open.contains(&"n") || open.contains(&"kappa");
     let tightest = |of: fn(&Derived) -> Option<crate::derived::Value>| {
-        let errors = derived.iter().filter_map(of).map(|product| product.stderr / product.value);
+        let errors = derived
+            .iter()
+            .filter_map(of)
+            .map(|product| product.stderr / product.value);
         errors.fold(f64::INFINITY, f64::min)
     };
     let products = [
@@ -75,9 +82,8 @@ pub fn undetermined(params: &Params<f64>, known: &Uncertainty, derived: &[Derive
         .filter(|(rho, _, error)| index_is_open && open.contains(rho) && *error < TIGHT);
     let through: Vec<(&'static str, &'static str, f64)> = through.copied().collect();
     if !through.is_empty() {
-        let of_products = |name: &&'static str| {
-            matches!(*name, "n" | "kappa") || through.iter().any(|(rho, ..)| rho == name)
-        };
+        let of_products =
+            |name: &&'static str| matches!(*name, "n" | "kappa") || through.iter().any(|(rho, ..)| rho == name);
         found.push(Undetermined {
             parameters: open.iter().copied().filter(of_products).collect(),
             through: through.iter().map(|&(_, product, error)| (product, error)).collect(),

@@ -241,6 +241,8 @@ fn json_keeps_its_contract() {
         "rms_ln",
         "parameters",
         "at_bound",
+        "uncertainty",
+        "derived",
         "stop",
         "minima",
         "evaluations",
@@ -270,6 +272,22 @@ fn json_keeps_its_contract() {
     assert_eq!(
         (&first["mse2"], &first["parameters"]),
         (&one["mse2"], &one["parameters"])
+    );
+    let known = &one["uncertainty"];
+    assert_eq!(known["degrees_of_freedom"], 76);
+    assert!(known["residual_scale"].is_f64() && known["condition"].as_f64() >= Some(1.0));
+    assert!(known["stderr"]["m"].as_f64().unwrap() < 1e-9 && known["stderr_without_bounds"]["m"].is_f64());
+    assert_eq!(known["correlation"]["n"]["n"].as_f64().unwrap().round(), 1.0);
+    assert!(known["on_bound"].is_array() && known["undetermined"].is_array());
+    let angles = one["derived"].as_array().unwrap();
+    assert_eq!(angles.len(), 2);
+    assert!((angles[0]["theta_i_deg"].as_f64().unwrap() - 30.0).abs() < 1e-9);
+    for quantity in ["rho_s_f", "rho_v_f", "peak_brdf_per_sr", "width_deg", "reflectance"] {
+        assert!(angles[0][quantity]["value"].is_f64() && angles[0][quantity]["stderr"].is_f64());
+    }
+    assert_eq!(
+        angles[0]["energy_conserved"],
+        angles[0]["reflectance"]["value"].as_f64() <= Some(1.0)
     );
     assert!(first["hits"].as_u64() >= Some(1) && first["first_start"].is_u64());
     assert!(one["evaluations"]["cost"].is_u64() && one["evaluations"]["linearize"].is_u64());

@@ -16,13 +16,35 @@ pub struct Known {
     degrees_of_freedom: usize,
     /// Of J'J, columns scaled, over the parameters inside their bounds.
     condition: f64,
-    /// In the order of [`NAMES`]; null where a parameter has none.
-    stderr: [Option<f64>; 6],
+    /// Null where a parameter has none.
+    stderr: ByName<Option<f64>>,
     /// As if no bound held another parameter.
-    stderr_without_bounds: [Option<f64>; 6],
-    correlation: [[f64; 6]; 6],
+    stderr_without_bounds: ByName<Option<f64>>,
+    correlation: ByName<ByName<f64>>,
     on_bound: Vec<OnBound>,
     undetermined: Vec<Open>,
+}
+
+/// One for each parameter.
+#[derive(Serialize)]
+struct ByName<T> {
+    rho_d: T,
+    rho_s: T,
+    rho_v: T,
+    m: T,
+    n: T,
+    kappa: T,
+}
+
+fn by_name<T>([rho_d, rho_s, rho_v, m, n, kappa]: [T; 6]) -> ByName<T> {
+    ByName {
+        rho_d,
+        rho_s,
+        rho_v,
+        m,
+        n,
+        kappa,
+    }
 }
 
 #[derive(Serialize)]
@@ -84,12 +106,14 @@ pub fn known(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> 
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
         condition: known.condition,
-        stderr: std::array::from_fn(|k| has(k, Place::Inside).then_some(known.stderr[k])),
-        stderr_without_bounds: std::array::from_fn(|k| {
+        stderr: by_name(std::array::from_fn(|k| {
+            has(k, Place::Inside).then_some(known.stderr[k])
+        })),
+        stderr_without_bounds: by_name(std::array::from_fn(|k| {
             let free = has(k, Place::Inside) || has(k, Place::Lower) || has(k, Place::Upper);
             free.then_some(known.stderr_lifted[k])
-        }),
-        correlation: known.correlation,
+        })),
+        correlation: by_name(known.correlation.map(by_name)),
         on_bound: on_bound.collect(),
         undetermined: open.collect(),
     }

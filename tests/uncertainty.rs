@@ -1,4 +1,8 @@
 //! Standard errors against slow literal algebra, reflectance and the lobe's shape against slow literal integrals and scans.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "oracles may use std's functions; the code under test may not"
+)]
 
 use std::f64::consts::PI;
 

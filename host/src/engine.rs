@@ -278,12 +278,13 @@ fn run<R: Real, const TERMS: u8, const P: usize>(
         scan: Scan::<f64, TERMS, P>::new(&blocks),
         simd: options.simd,
     };
+    let counted = samples.iter().filter(|sample| sample.weight != 0.0).count();
     let box64 = Bounds {
         lower: bounds.lower.map(R::f64),
         upper: bounds.upper.map(R::f64),
     };
     Ok(Outcome {
-        uncertainty: uncertainty::at(&exact, &best.x.map(R::f64), &box64, samples.len()),
+        uncertainty: uncertainty::at(&exact, &best.x.map(R::f64), &box64, counted),
         samples: samples.len(),
         cost: best.at.cost.f64(),
         mse2: mse2(best.at.cost),

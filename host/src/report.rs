@@ -343,7 +343,8 @@ fn page(report: &Report, minima: bool) -> String {
     if let Some(elapsed) = report.elapsed {
         line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
     }
-    for known in known_text::lines(&outcome.params, &outcome.uncertainty, &report.derived) {
+    let weighted = report.read_as.weighted;
+    for known in known_text::lines(&outcome.params, &outcome.uncertainty, &report.derived, weighted) {
         line(known);
     }
     if minima {

@@ -24,7 +24,9 @@ pub fn remark(index: usize, known: &Uncertainty) -> String {
 }
 
 /// Lines on what is known, what is not, and what follows.
-pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> Vec<String> {
+///
+/// With weights, the residual is in their unit and no part of f.
+pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived], weighted: bool) -> Vec<String> {
     let mut lines = Vec::new();
     if known.degrees_of_freedom == 0 {
         lines.push("  known      no standard errors: as many parameters as samples".into());
@@ -32,7 +34,11 @@ pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> 
     }
     lines.push(format!(
         "  known      residual {}, {} degrees of freedom, condition {}",
-        percent(known.scale),
+        if weighted {
+            short(known.scale) + " of the weights' unit"
+        } else {
+            percent(known.scale)
+        },
         known.degrees_of_freedom,
         short(known.condition)
     ));

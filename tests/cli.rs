@@ -213,11 +213,110 @@ fn errors_of_options_are_one_line() {
 }
 
 #[test]
-fn help_fits_a_screen_and_has_examples() {
-    assert!(succeed(&["--help"]).lines().count() <= 24);
-    for command in ["fit", "batch", "merge", "simulate", "converge", "stability", "paper"] {
-        assert!(succeed(&[command, "--help"]).contains(&format!("Example:\n  brdfit {command} ")));
+fn help_fits_a_screen_and_its_examples_are_valid() {
+    let help = succeed(&["--help"]);
+    assert!(help.lines().count() <= 30, "{help}");
+    assert!(help.contains("Exit codes: 0 done, 1 "));
+    let program = brdfit::cli::command();
+    for command in program.get_subcommands().map(clap::Command::get_name) {
+        let help = succeed(&[command, "--help"]);
+        let (_, examples) = help
+            .split_once("\nExample:\n")
+            .unwrap_or_else(|| panic!("{command} has no example"));
+        assert!(
+            examples
+                .lines()
+                .any(|example| example.starts_with(&format!("  brdfit {command}")))
+        );
+        for example in examples.lines() {
+            // As far as it is for this program, and without what is for the shell.
+            let words = example.split(['|', '>']).next().unwrap().replace('\'', "");
+            let parsed = program.clone().try_get_matches_from(words.split_whitespace());
+            assert!(parsed.is_ok(), "{example}: {}", parsed.unwrap_err());
+        }
     }
+}
+
+#[test]
+fn completions_and_manual_know_every_command() {
+    let program = brdfit::cli::command();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = succeed(&["completions", shell]);
+        for command in program.get_subcommands().map(clap::Command::get_name) {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+        assert!(script.contains("drop-invalid"), "{shell}");
+    }
+    let page = succeed(&["man"]);
+    assert!(page.contains(".TH brdfit 1") && page.contains("Exit codes"), "{page}");
+    let page = succeed(&["man", "fit"]);
+    assert!(
+        page.contains(".TH brdfit\\-fit 1") || page.contains(".TH brdfit-fit 1"),
+        "{page}"
+    );
+    assert!(page.contains("drop\\-invalid"));
+    assert!(fail(&["man", "woman"]).contains("take one of fit, batch"));
+}
+
+#[test]
+fn quiet_leaves_results_and_errors() {
+    let (folder, file) = scene();
+    let dirty = write(&folder, "dirty.csv", fs::read_to_string(&file).unwrap() + "30,85,0\n");
+    let arguments = ["fit", &dirty, "--drop-invalid", "--format", "csv"];
+    let loud = brdfit(&arguments);
+    let quiet = brdfit(&[&arguments[..], &["--quiet"]].concat());
+    assert!(loud.errors.contains("left out") && quiet.errors.is_empty());
+    assert_eq!(
+        (quiet.code, quiet.output.lines().count()),
+        (0, loud.output.lines().count())
+    );
+    assert!(fail(&["-q", "fit", "missing.csv"]).contains("no such file"));
+    let out = text(&folder.path().join("out.csv"));
+    let ran = brdfit(&["-q", "batch", &file, "missing.csv", "-o", &out]);
+    assert_eq!((ran.code, ran.output.as_str()), (1, ""));
+    assert!(
+        ran.errors.starts_with("missing.csv: no such file")
+            && ran.errors.ends_with("1 of 2 scans could not be fitted\n")
+    );
+}
+
+#[test]
+fn colours_are_where_they_are_asked_for() {
+    let red = "\x1b[1;31mmissing.csv\x1b[0m: no such file";
+    for always in [&["--color", "always"] as &[&str], &["--color=always"]] {
+        assert!(
+            brdfit(&[&["fit", "missing.csv"], always].concat())
+                .errors
+                .starts_with(red)
+        );
+        assert!(
+            brdfit(&[always, &["fit", "missing.csv"]].concat())
+                .errors
+                .starts_with(red)
+        );
+        assert!(succeed(&[&["--help"], always].concat()).contains('\x1b'));
+        assert!(
+            brdfit(&[&["fit", "--nonsense"], always].concat())
+                .errors
+                .contains('\x1b')
+        );
+    }
+    for other in ["auto", "never"] {
+        assert!(!fail(&["fit", "missing.csv", "--color", other]).contains('\x1b'));
+        assert!(!succeed(&["--help", "--color", other]).contains('\x1b'));
+    }
+    assert_eq!(brdfit(&["fit", "missing.csv", "--color", "sometimes"]).code, 2);
+}
+
+#[test]
+fn standard_input_and_output_are_a_dash() {
+    let (_folder, file) = scene();
+    let scan = fs::read(&file).unwrap();
+    let named = succeed(&["fit", &file, "--minima", "--format", "csv"]);
+    let piped = program::brdfit(&["fit", "-", "--minima", "--format", "csv", "--output", "-"], &scan);
+    assert_eq!((piped.code, piped.errors.as_str()), (0, ""));
+    assert_eq!(piped.output.replace("\n-,", &format!("\n{file},")), named);
+    assert_eq!(succeed(&[&SCENE[..], &["-o", "-"]].concat()), succeed(&SCENE));
 }
 
 #[test]

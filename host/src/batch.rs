@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::Streams;
+use crate::cli::{Ended, Streams};
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
@@ -59,11 +59,11 @@ pub struct Arguments {
     read: ReadOptions,
 }
 
-/// Runs the subcommand; the result is the exit code.
+/// Runs the subcommand; the result says how it went.
 ///
 /// # Errors
 /// The first thing that is wrong with options or the output, but not with a scan.
-pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<u8, Error> {
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let out = arguments.out.as_path();
     let to_stdout = out.as_os_str() == STDIN;
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
@@ -104,19 +104,17 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<u8, Error> {
     bar.finish_and_clear();
     let (done, mut journal) = (done?, journal.into_inner().unwrap_or_else(PoisonError::into_inner));
     if done < places.len() {
-        let _ = writeln!(
-            streams.errors,
-            "interrupted: {done} of {} files are done; {}",
-            places.len(),
-            match scratch {
-                Some(_) => "with --out FILE they would have been kept".to_string(),
-                None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
-            }
-        );
-        return Ok(interrupt::EXIT_CODE);
+        let kept = match scratch {
+            Some(_) => "with --out FILE they would have been kept".to_string(),
+            None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
+        };
+        return Ok(Ended {
+            code: interrupt::EXIT_CODE,
+            why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
+        });
     }
     let mut records = places.iter().map(|&index| journal.record(index));
-    let code = match arguments.shard {
+    let ended = match arguments.shard {
         Some(shard) => {
             let mut summary = Summary::default();
             let path = record::shard_path(out, shard);
@@ -126,10 +124,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<u8, Error> {
         None => deliver(form, &head.columns, &mut records, out, streams)?,
     };
     journal.remove();
-    Ok(code)
+    Ok(ended)
 }
 
-/// Writes the results of a whole batch, and tells how it went; the result is the exit code.
+/// Writes the results of a whole batch, and tells how it went; the result says how it went.
 ///
 /// # Errors
 /// A record is broken, or the output can not be written.
@@ -139,7 +137,7 @@ pub(crate) fn deliver(
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     out: &Path,
     streams: &mut Streams,
-) -> Result<u8, Error> {
+) -> Result<Ended, Error> {
     let mut summary = Summary::default();
     let to_stdout = out.as_os_str() == STDIN;
     if to_stdout {

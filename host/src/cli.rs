@@ -3,18 +3,30 @@
 use std::ffi::OsString;
 use std::io::{Read, Write};
 
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, fit, paper, simulate, stability};
+use crate::{converge, fit, paper, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
-#[command(name = "brdfit", version, propagate_version = true)]
+#[command(
+    name = "brdfit",
+    version,
+    propagate_version = true,
+    disable_help_subcommand = true,
+    after_help = "Exit codes: 0 done, 1 some scans of a batch could not be fitted, 2 wrong input or options, 130 interrupted.\n\nExample:\n  brdfit fit paint.csv"
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Shows no progress, notes or summaries: only results and errors
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Colours of help and errors
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    color: ColorChoice,
 }
 
 // A further subcommand is a module with `Arguments` and `run`, one variant here and one arm in `dispatch`.
@@ -27,6 +39,8 @@ enum Command {
     Paper(paper::Arguments),
     Converge(converge::Arguments),
     Stability(stability::Arguments),
+    Completions(shell::Completions),
+    Man(shell::Manual),
 }
 
 /// What the program reads and writes.
@@ -39,25 +53,83 @@ pub struct Streams<'a> {
     pub errors: &'a mut dyn Write,
     /// Show progress on the terminal that standard error is.
     pub progress: bool,
+    /// Colours where `--color` does not say.
+    pub color: bool,
+    /// Show no summaries.
+    pub quiet: bool,
+}
+
+/// How a command ended that did what it was asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ended {
+    /// The exit code.
+    pub code: u8,
+    /// What standard error is told, even with `--quiet`: nothing, or whole lines.
+    pub why: String,
+}
+
+/// The program's commands and options, of which help, completions and manual are made.
+pub fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Runs the program on its arguments, of which the first is its own name; the result is the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams) -> u8 {
-    let cli = match Cli::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let color = color(&arguments, streams.color);
+    let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
-        Err(error) => return explain(&error, streams),
+        Err(error) => return explain(&error, color, streams),
     };
-    match dispatch(&cli.command, streams) {
-        Ok(code) => code,
+    let mut nowhere = std::io::sink();
+    let ended = dispatch(
+        &cli.command,
+        &mut Streams {
+            input: streams.input,
+            output: streams.output,
+            errors: if cli.quiet { &mut nowhere } else { streams.errors },
+            progress: streams.progress && !cli.quiet,
+            color,
+            quiet: cli.quiet,
+        },
+    );
+    // If even standard error is closed, the exit code remains.
+    match ended {
+        Ok(ended) => {
+            let _ = streams.errors.write_all(ended.why.as_bytes());
+            ended.code
+        }
         Err(error) => {
-            // If even standard error is closed, the exit code remains.
-            let _ = writeln!(streams.errors, "{error}");
+            let _ = writeln!(
+                streams.errors,
+                "{}",
+                if color { error.in_color() } else { error.to_string() }
+            );
             EXIT_CODE
         }
     }
 }
 
-fn dispatch(command: &Command, streams: &mut Streams) -> Result<u8, Error> {
+/// Are colours wanted? Also known where the other arguments make no sense.
+fn color(arguments: &[OsString], auto: bool) -> bool {
+    let texts: Vec<_> = arguments.iter().map(|argument| argument.to_string_lossy()).collect();
+    let given = texts
+        .iter()
+        .enumerate()
+        .rev()
+        .find_map(|(place, text)| match text.strip_prefix("--color") {
+            Some("") => texts.get(place + 1).map(|next| next.as_ref()),
+            Some(rest) => rest.strip_prefix('='),
+            None => None,
+        });
+    match given {
+        Some("always") => true,
+        Some("never") => false,
+        _ => auto,
+    }
+}
+
+fn dispatch(command: &Command, streams: &mut Streams) -> Result<Ended, Error> {
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
@@ -66,17 +138,24 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<u8, Error> {
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
+        Command::Completions(arguments) => shell::completions(arguments, streams),
+        Command::Man(arguments) => shell::manual(arguments, streams),
     }?;
-    Ok(0)
+    Ok(Ended::default())
 }
 
 /// Help, the version, or what clap says of wrong usage.
-fn explain(error: &clap::Error, streams: &mut Streams) -> u8 {
+fn explain(error: &clap::Error, color: bool, streams: &mut Streams) -> u8 {
     let to: &mut dyn Write = if error.use_stderr() {
         streams.errors
     } else {
         streams.output
     };
-    let _ = write!(to, "{}", error.render());
+    let text = error.render();
+    let _ = if color {
+        write!(to, "{}", text.ansi())
+    } else {
+        write!(to, "{text}")
+    };
     if error.use_stderr() { EXIT_CODE } else { 0 }
 }

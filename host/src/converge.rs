@@ -40,8 +40,8 @@ pub struct Arguments {
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Writes the result to a file
-    #[arg(long, value_name = "FILE")]
+    /// Writes the result to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draws the excess cost over the run time, as SVG
     #[arg(long, value_name = "FILE.svg")]

@@ -59,24 +59,35 @@ impl Error {
     }
 }
 
+impl Error {
+    /// As it prints, with the place in red for a terminal.
+    pub fn in_color(&self) -> String {
+        format!("\x1b[1;31m{}\x1b[0m{}", self.place(), self.message())
+    }
+
+    /// `file:line:column`, as far as they are known.
+    fn place(&self) -> String {
+        // A file's name may hold a line break, but the message must stay one line.
+        let file = self.file.as_deref().unwrap_or("error").replace(['\n', '\r'], "?");
+        match (self.line, self.column) {
+            (None, _) => file,
+            (Some(line), None) => format!("{file}:{line}"),
+            (Some(line), Some(column)) => format!("{file}:{line}:{column}"),
+        }
+    }
+
+    /// What follows the place.
+    fn message(&self) -> String {
+        match &self.help {
+            Some(help) => format!(": {}; {help}", self.what),
+            None => format!(": {}", self.what),
+        }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // A file's name may hold a line break, but the message must stay one line.
-        match &self.file {
-            Some(file) => f.write_str(&file.replace(['\n', '\r'], "?"))?,
-            None => f.write_str("error")?,
-        }
-        if let Some(line) = self.line {
-            write!(f, ":{line}")?;
-            if let Some(column) = self.column {
-                write!(f, ":{column}")?;
-            }
-        }
-        write!(f, ": {}", self.what)?;
-        match &self.help {
-            Some(help) => write!(f, "; {help}"),
-            None => Ok(()),
-        }
+        write!(f, "{}{}", self.place(), self.message())
     }
 }
 
@@ -108,6 +119,7 @@ mod tests {
             "scan.csv:12:3: the BRDF is -0.1, which has no logarithm; use --drop-invalid to leave such rows out"
         );
         assert_eq!(Error::new("no").to_string(), "error: no");
+        assert_eq!(Error::new("no").in_color(), "\x1b[1;31merror\x1b[0m: no");
         assert_eq!(shown(" a\nb "), "a\\nb");
     }
 }

@@ -31,8 +31,8 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
-    /// Writes the result to a file
-    #[arg(long, value_name = "FILE")]
+    /// Writes the result to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draws the scan with its distinct minima, as SVG; for one scan
     #[arg(long, value_name = "FILE.svg")]

@@ -61,12 +61,12 @@ pub fn replace_with(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io
     })
 }
 
-/// Writes to `path`, or to the stream if there is none.
+/// Writes to `path`, or to the stream if there is none or it is `-`.
 ///
 /// # Errors
 /// As [`replace_file`], and if the stream breaks; a reader that wants no more, such as `head`, is no error.
 pub fn deliver(contents: &[u8], path: Option<&Path>, stream: &mut dyn Write) -> Result<(), Error> {
-    match path {
+    match path.filter(|path| path.as_os_str() != "-") {
         Some(path) => replace_file(path, contents),
         None => match stream.write_all(contents).and_then(|()| stream.flush()) {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

@@ -61,8 +61,8 @@ pub struct Arguments {
     /// Gives ln of the BRDF, right also where the BRDF itself underflows
     #[arg(long)]
     ln: bool,
-    /// Writes the table to a file
-    #[arg(long, value_name = "FILE")]
+    /// Writes the table to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
 }
 

@@ -27,8 +27,8 @@ pub struct Arguments {
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// Writes the result to a file
-    #[arg(long, value_name = "FILE")]
+    /// Writes the result to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,

@@ -25,6 +25,8 @@ pub fn brdfit(arguments: &[&str], mut input: &[u8]) -> Ran {
             output: &mut output,
             errors: &mut errors,
             progress: false,
+            color: false,
+            quiet: false,
         },
     );
     let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");

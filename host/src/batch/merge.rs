@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::record::{self, Head, Record};
 use super::results::Form;
-use crate::cli::Streams;
+use crate::cli::{Ended, Streams};
 use crate::error::Error;
 
 /// Makes one result of the parts of a batch
@@ -28,11 +28,11 @@ pub struct Arguments {
     format: Option<Form>,
 }
 
-/// Runs the subcommand; the result is the exit code.
+/// Runs the subcommand; the result says how the batch went.
 ///
 /// # Errors
 /// The parts are not those of one whole batch, or the result can not be written.
-pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<u8, Error> {
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let out = arguments.out.as_path();
     let form = Form::of(out, arguments.format)?;
     let paths = if arguments.parts.is_empty() {

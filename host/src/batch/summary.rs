@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::record::{Line, Record};
-use crate::cli::Streams;
+use crate::cli::{Ended, Streams};
 use crate::error::Error;
 
 /// Lines that are printed; means are over all.
@@ -58,21 +58,22 @@ impl Summary {
         }
     }
 
-    /// Prints the page, if it is `shown`, and what failed; the result is the exit code.
-    pub fn tell(&self, shown: bool, streams: &mut Streams) -> u8 {
+    /// Prints the page, if it is `shown`, and gives what failed.
+    pub fn tell(&self, shown: bool, streams: &mut Streams) -> Ended {
         // The results are written, and that nobody reads this is no failure of theirs.
-        if shown {
+        if shown && !streams.quiet {
             let _ = streams.output.write_all(self.text().as_bytes());
         }
         if self.failed == 0 {
-            return 0;
+            return Ended::default();
         }
+        let mut why = String::new();
         for failure in &self.failures {
-            let _ = writeln!(streams.errors, "{failure}");
+            why += &format!("{failure}\n");
         }
         let all = self.scans + self.failed;
-        let _ = writeln!(streams.errors, "{} of {all} scans could not be fitted", self.failed);
-        SOME_FAILED
+        why += &format!("{} of {all} scans could not be fitted\n", self.failed);
+        Ended { code: SOME_FAILED, why }
     }
 
     /// The page.

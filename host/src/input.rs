@@ -14,7 +14,7 @@ pub mod raw;
 mod rows;
 mod table;
 pub mod units;
-mod weight;
+pub mod weight;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,133 @@
+//! Rows of arrays as samples of scans. Degrees become radians here, in the way of the program's files.
+
+use brdfit::input::azimuth;
+use brdfit::input::weight::{self, Source};
+use brdfit::output::shortest;
+use brdfit_core::geometry::{Observation, Sample};
+use numpy::PyReadonlyArray2;
+use numpy::ndarray::ArrayView2;
+use pyo3::prelude::*;
+
+/// Arrays of the same shape (scans, samples).
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Arrays<'py> {
+    theta_i: PyReadonlyArray2<'py, f64>,
+    theta_s: PyReadonlyArray2<'py, f64>,
+    delta_phi: PyReadonlyArray2<'py, f64>,
+    brdf: PyReadonlyArray2<'py, f64>,
+    sigma: Option<PyReadonlyArray2<'py, f64>>,
+}
+
+impl Arrays<'_> {
+    /// What can be read without the interpreter.
+    pub fn scans(&self) -> Scans<'_> {
+        Scans {
+            theta_i: self.theta_i.as_array(),
+            theta_s: self.theta_s.as_array(),
+            delta_phi: self.delta_phi.as_array(),
+            brdf: self.brdf.as_array(),
+            sigma: self.sigma.as_ref().map(|sigma| sigma.as_array()),
+        }
+    }
+}
+
+/// Angles in degrees, BRDF and its standard deviation in sr^-1; shape (scans, samples).
+#[derive(Clone, Copy)]
+pub struct Scans<'a> {
+    theta_i: ArrayView2<'a, f64>,
+    theta_s: ArrayView2<'a, f64>,
+    delta_phi: ArrayView2<'a, f64>,
+    brdf: ArrayView2<'a, f64>,
+    sigma: Option<ArrayView2<'a, f64>>,
+}
+
+impl Scans<'_> {
+    /// How many scans there are.
+    pub fn count(&self) -> usize {
+        self.brdf.nrows()
+    }
+
+    /// The samples of a scan, weighted as the program weights those of a file.
+    ///
+    /// # Errors
+    /// With `drop_invalid` false, what is wrong with the first sample that is not valid.
+    pub fn samples(&self, scan: usize, drop_invalid: bool) -> Result<Vec<Sample<f64>>, String> {
+        let mut samples = Vec::with_capacity(self.brdf.ncols());
+        let mut weights = weight::Sum::default();
+        for index in 0..self.brdf.ncols() {
+            let at = [scan, index];
+            let sample = Sample {
+                theta_i: self.theta_i[at].to_radians(),
+                theta_s: self.theta_s[at].to_radians(),
+                delta_phi: azimuth(self.delta_phi[at]),
+                brdf: self.brdf[at],
+                weight: self.weight(at),
+            };
+            if Observation::new(&sample).is_ok() && sample.weight > 0.0 {
+                weights.add(sample.weight, Source::Sigma);
+                samples.push(sample);
+            } else if !drop_invalid {
+                return Err(self.fault(scan, index));
+            }
+        }
+        if self.sigma.is_some() {
+            weights.normalise(&mut samples);
+        }
+        Ok(samples)
+    }
+
+    /// One over the standard deviation of ln f; 0 or not finite where that is no number above 0.
+    fn weight(&self, at: [usize; 2]) -> f64 {
+        match &self.sigma {
+            Some(sigma) => 1.0 / (sigma[at] / self.brdf[at]),
+            None => 1.0,
+        }
+    }
+
+    /// One line on a sample that is not valid.
+    fn fault(&self, scan: usize, index: usize) -> String {
+        // The cosine of what is nearer to 90 degrees is rounding.
+        const HORIZON: f64 = 90.0 - 1e-13;
+        let at = [scan, index];
+        let place = |name: &str| match self.count() {
+            1 => format!("{name}[{index}]"),
+            _ => format!("scan {scan}: {name}[{index}]"),
+        };
+        let angles = [
+            ("theta_i", self.theta_i[at], 0.0..=HORIZON),
+            ("theta_s", self.theta_s[at], -HORIZON..=HORIZON),
+            ("delta_phi", self.delta_phi[at], f64::MIN..=f64::MAX),
+        ];
+        for (name, degrees, range) in angles {
+            if !range.contains(&degrees) {
+                let help = "take degrees, 0 <= theta_i < 90 and -90 < theta_s < 90, or drop_invalid=True";
+                return format!(
+                    "{} is {}, which is no angle above the horizon; {help}",
+                    place(name),
+                    shortest(degrees)
+                );
+            }
+        }
+        let brdf = self.brdf[at];
+        let weight = self.weight(at);
+        if let Some(sigma) = &self.sigma
+            && (f64::MIN_POSITIVE..f64::INFINITY).contains(&brdf)
+            && !(weight > 0.0 && weight.is_finite())
+        {
+            let help = "leave the sample out, or take drop_invalid=True";
+            let value = shortest(sigma[at]);
+            return format!("{} is {value}, which is no standard deviation; {help}", place("sigma"));
+        }
+        let why = if brdf.is_finite() && brdf <= 0.0 {
+            "which has no logarithm"
+        } else {
+            "which is no number to compute with"
+        };
+        format!(
+            "{} is {}, {why}; leave the sample out, or take drop_invalid=True",
+            place("brdf"),
+            shortest(brdf)
+        )
+    }
+}

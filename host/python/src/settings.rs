@@ -1,0 +1,78 @@
+//! What the keyword arguments mean to the engine.
+
+use brdfit::engine::{FitOptions, Method, TERM_SETS};
+use brdfit::options::{self, Range};
+use brdfit_core::brdf::NAMES;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The keyword arguments of `fit` and `fit_many`, as `python/brdfit/__init__.py` puts them together.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Settings {
+    terms: Vec<String>,
+    bounds: Vec<(String, f64, f64)>,
+    seed: u64,
+    method: String,
+    /// Leaves out samples that are not valid, instead of refusing the scan.
+    pub drop_invalid: bool,
+}
+
+impl Settings {
+    /// The options of the engine.
+    ///
+    /// # Errors
+    /// `ValueError`, one line that names the argument.
+    pub fn options(&self) -> PyResult<FitOptions> {
+        let mut options = FitOptions {
+            method: match self.method.as_str() {
+                "default" => Method::Default,
+                "paper" => Method::Paper,
+                other => {
+                    let what = format!("there is no method {other:?}; method is \"default\" or \"paper\"");
+                    return Err(PyValueError::new_err(what));
+                }
+            },
+            seed: self.seed,
+            terms: terms(&self.terms)?,
+            ..FitOptions::default()
+        };
+        let ranges: Vec<Range> = self.bounds.iter().map(range).collect::<PyResult<_>>()?;
+        options::apply(&ranges, options.terms, &mut options.lower, &mut options.upper)
+            .map_err(|error| refuse(&error.what, "leave it out of bounds, or take more terms"))?;
+        Ok(options)
+    }
+}
+
+fn terms(names: &[String]) -> PyResult<u8> {
+    options::terms(&names.join(",")).map_err(|error| {
+        let sets: Vec<String> = TERM_SETS
+            .iter()
+            .map(|&set| options::term_names(set).join(","))
+            .collect();
+        refuse(&error.what, &format!("terms is one of: {}", sets.join(" | ")))
+    })
+}
+
+fn range((name, lower, upper): &(String, f64, f64)) -> PyResult<Range> {
+    let known = NAMES.iter().position(|known| known == name);
+    let index = known.ok_or_else(|| {
+        let help = format!("the parameters are {}", NAMES.join(", "));
+        refuse(&format!("there is no parameter {name:?}"), &help)
+    })?;
+    let (lower, upper) = (*lower, *upper);
+    for value in [lower, upper] {
+        let (least, largest) = options::domain(index);
+        let help = format!("bounds take numbers from {least} to {largest}");
+        options::check(index, value).map_err(|error| refuse(&error.what, &help))?;
+    }
+    if lower > upper {
+        let help = format!("write \"{name}\": ({upper}, {lower})");
+        return Err(refuse(&format!("the bounds of {name} are the wrong way round"), &help));
+    }
+    Ok(Range { index, lower, upper })
+}
+
+fn refuse(what: &str, help: &str) -> PyErr {
+    PyValueError::new_err(format!("{what}; {help}"))
+}

@@ -4,17 +4,25 @@
 //! [`check`] makes samples of these: units, masks, validity, weights.
 //! Degrees and file formats exist here and in `simulate` only.
 
+mod astm;
+mod bird;
 pub mod bytes;
 pub mod check;
 pub mod columns;
+mod direction;
 pub mod format;
+mod fred;
 pub mod left_out;
+mod lumos;
+mod matrix;
+mod merl;
 pub mod options;
 pub mod raw;
 mod rows;
 mod table;
 pub mod units;
 pub mod weight;
+mod zemax;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

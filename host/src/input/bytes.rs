@@ -58,6 +58,24 @@ pub fn text(bytes: &[u8]) -> Result<&str, Error> {
 }
 
 /// The line of the byte at `end`; the first is 1.
-pub fn line_at(bytes: &[u8], end: usize) -> u64 {
+fn line_at(bytes: &[u8], end: usize) -> u64 {
     1 + bytes[..end].iter().filter(|&&byte| byte == b'\n').count() as u64
+}
+
+/// Where the lines of a text begin.
+pub struct Lines(Vec<usize>);
+
+impl Lines {
+    /// Finds them.
+    pub fn new(text: &str) -> Lines {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        Lines(std::iter::once(0).chain(ends.map(|(end, _)| end + 1)).collect())
+    }
+
+    /// Line and column of `part`, which is a part of `text`; the first are 1.
+    pub fn place(&self, text: &str, part: &str) -> (u64, u64) {
+        let at = part.as_ptr().addr().saturating_sub(text.as_ptr().addr());
+        let line = self.0.partition_point(|&begin| begin <= at);
+        (line as u64, (at - self.0[line - 1]) as u64 + 1)
+    }
 }

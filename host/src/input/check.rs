@@ -27,7 +27,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let (mut samples, mut lines) = (Vec::new(), Vec::new());
     let (mut counts, mut faults) = (Counts::default(), Faults::default());
     let mut weights = weight::Sum::default();
-    for row in scan.rows.iter().step_by(options.thin.unwrap_or(1) as usize) {
+    for row in &scan.rows {
         match sample(row, &scan.places, &read_as, options).map_err(|error| at_line(error, row.line))? {
             Seen::Valid(sample, kind) => {
                 weights.add(sample.weight, kind);
@@ -89,7 +89,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
     for (column, name, angle) in [
         (places.theta_i, "theta_i", row.theta_i),
         (places.theta_s, "theta_s", row.theta_s),
-        (places.phi, "the azimuth", row.delta_phi),
+        (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
         if !angle.is_finite() {
             return invalid(column, format!("{name} is {angle}, which is no angle"));
@@ -106,7 +106,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
     let mut sample = Sample {
         theta_i: read_as.angles.radians(row.theta_i),
         theta_s: read_as.angles.radians(row.theta_s),
-        delta_phi: read_as.angles.azimuth(row.delta_phi),
+        delta_phi: row.delta_phi.map_or(f64::PI, |phi| read_as.angles.azimuth(phi)),
         brdf: 0.0,
         weight: 1.0,
     };

@@ -27,6 +27,9 @@ pub struct ReadOptions {
     /// Sign of theta_s on the side of the specular peak
     #[arg(long, value_enum, value_name = "SIGN", default_value = "positive")]
     pub forward: Forward,
+    /// Takes all directions of a MERL file, one in 97 bins or as --thin says, and not only those in plane
+    #[arg(long)]
+    pub merl_whole: bool,
     /// Leaves out rows without a valid value or angle, and says how many
     #[arg(long, help_heading = "What is left out")]
     pub drop_invalid: bool,

@@ -41,8 +41,8 @@ pub struct Row {
     pub theta_i: f64,
     /// Scattering angle, signed in plane.
     pub theta_s: f64,
-    /// Azimuth of scattering less that of incidence.
-    pub delta_phi: f64,
+    /// Azimuth of scattering less that of incidence; none in plane.
+    pub delta_phi: Option<f64>,
     /// The value.
     pub value: f64,
     /// What is known of its uncertainty.

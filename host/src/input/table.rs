@@ -74,14 +74,11 @@ fn scan(columns: &Columns, value: &Value, wavelength: &str) -> RawScan {
 
 fn row(cells: &[&str], line: u64, columns: &Columns, value: &Value) -> Result<Row, Error> {
     let phi = |column: Option<usize>| column.map(|column| number(cells, column)).transpose();
-    let delta_phi = match (phi(columns.phi_s)?, phi(columns.phi_i)?) {
-        (Some(phi_s), phi_i) => phi_s - phi_i.unwrap_or(0.0),
-        (None, _) => columns.angles.half_turn(),
-    };
+    let (phi_s, phi_i) = (phi(columns.phi_s)?, phi(columns.phi_i)?);
     Ok(Row {
         theta_i: number(cells, columns.theta_i)?,
         theta_s: number(cells, columns.theta_s)?,
-        delta_phi,
+        delta_phi: phi_s.map(|phi_s| phi_s - phi_i.unwrap_or(0.0)),
         value: number(cells, value.column)?,
         weight: match value.weight {
             None => Weight::Unknown,

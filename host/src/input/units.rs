@@ -15,14 +15,6 @@ pub enum Angles {
 }
 
 impl Angles {
-    /// Half a turn, the azimuth of the forward direction.
-    pub fn half_turn(self) -> f64 {
-        match self {
-            Angles::Deg => 180.0,
-            Angles::Rad => f64::PI,
-        }
-    }
-
     /// A polar angle in radians.
     pub fn radians(self, angle: f64) -> f64 {
         match self {

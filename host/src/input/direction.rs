@@ -1,0 +1,43 @@
+//! Directions as vectors, for formats whose angles are not those of the surface.
+
+use libm::{atan2, sqrt};
+
+/// Scattering angle and azimuth from incidence, degrees, of a direction with x forward in the plane of incidence and z the normal.
+///
+/// In plane, where y is 0, the scattering angle is signed and there is no azimuth; the direction needs no length of 1.
+pub fn angles([x, y, z]: [f64; 3]) -> (f64, Option<f64>) {
+    if y == 0.0 {
+        return (atan2(x, z).to_degrees(), None);
+    }
+    let theta_s = atan2(sqrt(x * x + y * y), z).to_degrees();
+    (theta_s, Some(180.0 - atan2(y, x).to_degrees()))
+}
+
+/// Sine and cosine of an angle in degrees; exact at multiples of 90, so that what is in plane stays there.
+pub fn sin_cos(degrees: f64) -> (f64, f64) {
+    match degrees.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => libm::sincos(degrees.to_radians()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn in_plane_is_signed() {
+        for theta_s in [-80.0, -1.0, 0.0, 45.0, 89.0] {
+            let (sin, cos) = sin_cos(theta_s);
+            let (back, delta_phi) = angles([2.0 * sin, 0.0, 2.0 * cos]);
+            assert!((back - theta_s).abs() < 1e-13 && delta_phi.is_none());
+        }
+        let (theta_s, delta_phi) = angles([0.0, 1.0, 1.0]);
+        assert!((theta_s - 45.0).abs() < 1e-13 && (delta_phi.unwrap() - 90.0).abs() < 1e-13);
+        // Towards incidence the azimuth is 0.
+        assert!(angles([-1.0, 1e-9, 1.0]).1.unwrap().abs() < 1e-6);
+    }
+}

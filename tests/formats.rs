@@ -1,0 +1,504 @@
+//! Files as instruments write them: the same scan in every format gives the same fit, errors name their place, and genuine files are read.
+
+use std::fs;
+use std::path::Path;
+
+use brdfit::input::{self, Measurement, ReadOptions};
+use brdfit::report;
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::real::Real;
+use brdfit_suite::program;
+use brdfit_suite::scan::{left_out, number, rows, shared};
+use brdfit_suite::tolerance::{self, check};
+use serde_json::Value;
+use tempfile::TempDir;
+
+const TRUTH: [f64; 6] = [0.1, 10.0, 0.01, 0.1, 3.0, 1.0];
+const INCIDENT: [f64; 2] = [30.0, 60.0];
+
+/// The BRDF of [`TRUTH`] at angles in degrees.
+fn brdf(theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
+    let delta_phi = if delta_phi == 180.0 {
+        f64::PI
+    } else {
+        delta_phi.to_radians()
+    };
+    let geometry = Geometry::new(theta_i.to_radians(), theta_s.to_radians(), delta_phi).expect("valid angles");
+    Real::exp(report::ln_f(&Params::from_array(TRUTH), &geometry))
+}
+
+/// Scattering angles in plane.
+fn scattered() -> impl Iterator<Item = f64> {
+    (-20..=20).map(|k| f64::from(4 * k))
+}
+
+fn write(folder: &TempDir, name: &str, contents: impl AsRef<[u8]>) -> String {
+    let path = folder.path().join(name);
+    fs::write(&path, contents).expect("a writable folder");
+    path.to_str().expect("a path in UTF-8").to_string()
+}
+
+fn fit(arguments: &[&str]) -> Value {
+    let ran = program::brdfit(&[&["fit", "--format", "json"], arguments].concat(), b"");
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    serde_json::from_str(&ran.output).expect("JSON")
+}
+
+fn fail(arguments: &[&str]) -> String {
+    let ran = program::brdfit(&[&["fit"], arguments].concat(), b"");
+    assert_eq!(
+        (ran.code, ran.output.as_str(), ran.errors.matches('\n').count()),
+        (2, "", 1),
+        "{}",
+        ran.errors
+    );
+    ran.errors
+}
+
+/// The largest relative error of the parameters of one result.
+fn error(found: &Value) -> f64 {
+    let names = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"].into_iter().zip(TRUTH);
+    let errors = names.map(|(name, truth)| (found["parameters"][name].as_f64().expect("a number") / truth - 1.0).abs());
+    errors.fold(0.0, f64::max)
+}
+
+/// The scan of [`TRUTH`] in the text formats, by the name that the program has for each.
+fn texts() -> Vec<(&'static str, String)> {
+    let points: Vec<[f64; 2]> = INCIDENT
+        .iter()
+        .flat_map(|&i| scattered().map(move |s| [i, s]))
+        .collect();
+    let line = |write: &dyn Fn(f64, f64, f64) -> String| -> String {
+        points.iter().map(|&[i, s]| write(i, s, brdf(i, s, 180.0))).collect()
+    };
+    let mut matrix = String::from("theta_s\t30\t60\n");
+    for s in scattered() {
+        matrix += &format!("{s}\t{}\t{}\n", brdf(30.0, s, 180.0), brdf(60.0, s, 180.0));
+    }
+    let polar = |s: f64| (s.abs(), if s < 0.0 { 0.0 } else { 180.0 });
+    let list = |value: &dyn Fn(f64, f64) -> f64| -> String {
+        let values: Vec<String> = points.iter().map(|&[i, s]| value(i, s).to_string()).collect();
+        format!("[{}]", values.join(", "))
+    };
+    let bird = format!(
+        "{{\"metadata\": {{}}, \"data\": {{\"theta_i\": {{\"unit\": \"deg\", \"values\": {}}},\n\
+         \"phi_i\": {{\"unit\": \"deg\", \"values\": {}}},\n\"theta_r\": {{\"unit\": \"rad\", \"values\": {}}},\n\
+         \"phi_r\": {{\"unit\": \"deg\", \"values\": {}}},\n\"BRDF\": {{\"unit\": \"1/sr\", \"values\": {}}}}}}}\n",
+        list(&|i, _| i),
+        list(&|_, _| 90.0),
+        list(&|_, s| polar(s).0.to_radians()),
+        list(&|_, s| (polar(s).1 + 90.0) % 360.0),
+        list(&|i, s| brdf(i, s, 180.0)),
+    );
+    let block = |theta_i: f64| -> String {
+        scattered()
+            .map(|s| format!("{s} 0 {}\n", brdf(theta_i, s, 180.0) / 2.0))
+            .collect()
+    };
+    // Angles from the specular ray: theta_s = theta_i - radial, then theta_i + radial.
+    let radials: Vec<f64> = (0..=14).map(|k| f64::from(2 * k)).collect();
+    let zemax_row = |theta_i: f64, side: f64| -> String {
+        let values = radials
+            .iter()
+            .map(|radial| brdf(theta_i, theta_i + side * radial, 180.0).to_string());
+        values.collect::<Vec<_>>().join("\t") + "\n"
+    };
+    let mut zemax = format!(
+        "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\nSampleRotation 1\n0\n\
+         AngleOfIncidence 2\n30 60\nScatterAzimuth 2\n0 180\nScatterRadial 15\n{}\n\nMonochrome\nDataBegin\n",
+        radials.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
+    );
+    for theta_i in INCIDENT {
+        zemax += &format!("TIS 0.1\n{}{}", zemax_row(theta_i, -1.0), zemax_row(theta_i, 1.0));
+    }
+    zemax += "DataEnd\n";
+    vec![
+        (
+            "table",
+            "theta_i;theta_s;brdf\n".to_string() + &line(&|i, s, f| format!("{i};{s};{f}\n")),
+        ),
+        ("matrix", matrix),
+        (
+            "astm",
+            format!(
+                "LAB_NAME none\nNUM_POINTS {}\nVARS theta_i,phi_i,theta_s,phi_s,Integrated\n\n",
+                points.len()
+            ) + &line(&|i, s, f| {
+                let (theta_s, phi_s) = polar(s);
+                format!(
+                    "{},0,{},{:.6},{f}\n",
+                    i.to_radians(),
+                    theta_s.to_radians(),
+                    phi_s.to_radians()
+                )
+            }),
+        ),
+        ("bird", bird),
+        (
+            "fred",
+            format!(
+                "type bsdf_data\nformat angles=deg bsdf=value scale=2\n30 0\n{}60 0\n{}",
+                block(30.0),
+                block(60.0)
+            ),
+        ),
+        (
+            "lumos",
+            "# phi_i theta_i phi_o theta_o brdf\n".to_string() + &line(&|i, s, f| format!("{i} -180 {s} 0 {f}\n")),
+        ),
+        ("zemax", zemax),
+    ]
+}
+
+#[test]
+fn the_same_scan_in_every_format_gives_the_same_fit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (format, text) in texts() {
+        // The name says nothing.
+        let file = write(&folder, "scan.dat", &text);
+        let found = fit(&[&file]);
+        assert_eq!(found["input"]["format"], format);
+        let error = error(&found);
+        println!("{format}: {} samples, parameters to {error:.1e}", found["samples"]);
+        assert!(error < tolerance::FORMATS, "{format}: {error:e}");
+        assert_eq!(
+            fit(&[&file, "--input-format", format])["parameters"],
+            found["parameters"]
+        );
+    }
+}
+
+#[test]
+fn quantities_units_and_signs_are_what_the_options_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut text = String::from("theta_i,theta_s,brdf\n");
+    for theta_i in INCIDENT {
+        for theta_s in scattered() {
+            let (i, s) = (theta_i.to_radians(), theta_s.to_radians());
+            let value = f64::PI * brdf(theta_i, theta_s, 180.0) * Real::sin_cos(s).1;
+            text += &format!("{i},{},{value}\n", -s);
+        }
+    }
+    let file = write(&folder, "scan.csv", text);
+    let found = fit(&[
+        &file,
+        "--quantity",
+        "brf-cos",
+        "--angles",
+        "rad",
+        "--forward",
+        "negative",
+    ]);
+    assert!(error(&found) < tolerance::FORMATS, "{found}");
+    let input = serde_json::json!({
+        "format": "table", "angles": "rad", "quantity": "brf-cos", "forward": "negative", "weighted": false
+    });
+    assert_eq!(found["input"], input);
+    let page = program::brdfit(
+        &[
+            "fit",
+            &file,
+            "--quantity",
+            "ccbrdf",
+            "--angles",
+            "rad",
+            "--forward",
+            "negative",
+        ],
+        b"",
+    );
+    let said =
+        "read as    table with named columns: BRDF cos(theta_s) over radians, specular peak at theta_s = -theta_i\n";
+    assert!(page.output.contains(said), "{}", page.output);
+}
+
+#[test]
+fn columns_are_fitted_as_scans_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut text = String::from("theta_i,theta_s,R,550 nm\n");
+    for theta_i in INCIDENT {
+        for theta_s in scattered() {
+            let f = brdf(theta_i, theta_s, 180.0);
+            text += &format!("{theta_i},{theta_s},{f},{}\n", 0.5 * f);
+        }
+    }
+    let file = write(&folder, "scan.csv", text);
+    let found = fit(&[&file]);
+    let [red, green] = found.as_array().expect("a list").as_slice() else {
+        panic!("two results")
+    };
+    assert_eq!((&red["scan"], &green["scan"]), (&"R".into(), &"550 nm".into()));
+    let half = green["parameters"]["rho_d"].as_f64().expect("a number") / TRUTH[0];
+    assert!((half - 0.5).abs() < 1e-6 && error(red) < tolerance::FORMATS);
+    assert_eq!(fit(&[&file, "--column", "550nm"])["parameters"], green["parameters"]);
+    let table = program::brdfit(&["fit", &file, "--format", "csv"], b"").output;
+    assert!(table.starts_with("file,scan,samples,") && table.contains(",R,82,") && table.contains(",550 nm,82,"));
+    assert!(fail(&[&file, "--column", "G"]).contains("there is no scan 'G'"));
+    assert!(fail(&[&file, "--plot", "x.svg"]).contains("--plot draws one scan"));
+    let one = program::brdfit(&["stability", &file], b"");
+    assert!(
+        one.code == 2
+            && one
+                .errors
+                .contains("there are 2 scans: R, 550 nm; choose one with --column")
+    );
+}
+
+#[test]
+fn standard_deviations_are_weights() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut text = String::from("theta_i,theta_s,brdf,sigma\n");
+    for theta_i in INCIDENT {
+        for theta_s in scattered() {
+            let f = brdf(theta_i, theta_s, 180.0);
+            // One in four is ten times too bright, and known to be.
+            let (f, sigma) = if theta_s % 16.0 == 0.0 {
+                (10.0 * f, 1e6 * f)
+            } else {
+                (f, 0.01 * f)
+            };
+            text += &format!("{theta_i},{theta_s},{f},{sigma}\n");
+        }
+    }
+    let file = write(&folder, "scan.csv", text);
+    let (weighted, equal) = (fit(&[&file]), fit(&[&file, "--weights", "equal"]));
+    println!(
+        "weighted: parameters to {:.1e}, equal: {:.1e}",
+        error(&weighted),
+        error(&equal)
+    );
+    assert!(weighted["input"]["weighted"] == true && error(&weighted) < 1e-3 && error(&equal) > 0.1);
+    let left_out = fit(&[&file, "--weights", "equal", "--weight-angle", "60=0"]);
+    let counts = serde_json::json!([{"reason": "no_weight", "theta_i_deg": 60.0, "samples": 41}]);
+    assert_eq!((&left_out["samples"], &left_out["left_out"]), (&41.into(), &counts));
+    for option in [
+        ["--weight-angle", "60"],
+        ["--sigma-floor", "-1"],
+        ["--mask-retro", "x"],
+        ["--thin", "0"],
+    ] {
+        assert_eq!(program::brdfit(&[&["fit", &file], &option[..]].concat(), b"").code, 2);
+    }
+}
+
+#[test]
+fn errors_name_file_line_and_column() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let breaks = [
+        (
+            "table",
+            "brdf\n30;-80;",
+            "brdf\n30;oops;",
+            ":2:2: 'oops' is not a number",
+        ),
+        ("matrix", "\n-80\t", "\n-80\tx", ":2:2: 'x"),
+        (
+            "astm",
+            "NUM_POINTS 82",
+            "NUM_POINTS 81",
+            ":2: NUM_POINTS promises 81 rows, and there are 82",
+        ),
+        (
+            "bird",
+            "\"theta_r\": {\"unit\": \"rad\"",
+            "\"theta_r\": {\"unit\": \"gon\"",
+            ": the unit of theta_r is 'gon'",
+        ),
+        (
+            "bird",
+            "\"values\": [30,",
+            "\"values\": [true,",
+            ":1:65: 'true' is not a number",
+        ),
+        ("fred", "angles=deg", "angles=sin", ":2: 'angles=sin' is not understood"),
+        (
+            "lumos",
+            "\n30 -180 -80 0 ",
+            "\n30 -180 -80 ",
+            ":2: the row has 4 numbers",
+        ),
+        (
+            "zemax",
+            "ScatterType BRDF",
+            "ScatterType BTDF",
+            ":4: ScatterType is 'BTDF'",
+        ),
+    ];
+    for (format, from, to, expected) in breaks {
+        let (_, text) = texts().into_iter().find(|(name, _)| *name == format).expect("a format");
+        assert!(text.contains(from), "{format}: {from}");
+        let file = write(&folder, "bad.dat", text.replacen(from, to, 1));
+        let message = fail(&[&file]);
+        assert!(
+            message.starts_with(&format!("{file}{expected}")) && message.contains("; "),
+            "{message}"
+        );
+    }
+    let file = write(&folder, "bad.dat", "just text\n");
+    for format in ["merl", "zemax", "astm", "bird"] {
+        assert!(fail(&[&file, "--input-format", format]).starts_with(&format!("{file}:")));
+    }
+}
+
+#[test]
+fn a_whole_merl_file_gives_its_parameters_back() {
+    // Bins are narrow where the file has its peak, so a fit of their middles is exact; theta_d is rounded in plane.
+    const BINS: [usize; 3] = [90, 90, 180];
+    let mut file: Vec<u8> = BINS.iter().flat_map(|&bins| (bins as u32).to_le_bytes()).collect();
+    for scale in [1.0, 1.15, 1.66] {
+        for bin in 0..BINS.iter().product() {
+            let (k, j, i) = (bin % 180, bin / 180 % 90, bin / 180 / 90);
+            let raw = middle(i, j, k).map_or(-1.0, |f| f * 1500.0 / scale);
+            file.extend(raw.to_le_bytes());
+        }
+    }
+    let read = |merl_whole| {
+        let options = ReadOptions {
+            merl_whole,
+            column: vec!["G".into()],
+            max_angle: Some(80.0),
+            ..ReadOptions::default()
+        };
+        input::parse("merl", &file, &options).expect("a MERL file").remove(0)
+    };
+    for (whole, least) in [(true, 3000), (false, 700)] {
+        let scan = read(whole);
+        let rms = rms_from_truth(&scan.samples);
+        println!(
+            "MERL, whole: {whole}: {} samples, rms ln f {rms:.1e}",
+            scan.samples.len()
+        );
+        assert!(scan.samples.len() > least);
+        check(
+            rms,
+            if whole {
+                tolerance::MERL_WHOLE
+            } else {
+                tolerance::MERL_IN_PLANE
+            },
+        );
+    }
+}
+
+/// The BRDF of [`TRUTH`] in the middle of a bin of a MERL file, by rotating vectors; none below the surface.
+fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
+    let half = i as f64 + 0.5;
+    let [h, d, p] = [half * half / 90.0, j as f64 + 0.5, k as f64 + 0.5].map(f64::to_radians);
+    let turn = |sign: f64| {
+        let (sin_d, cos_d) = (Real::sin_cos(d).0 * sign, Real::sin_cos(d).1);
+        let (x, y, z) = (sin_d * libm::cos(p), sin_d * libm::sin(p), cos_d);
+        [
+            libm::cos(h) * x + libm::sin(h) * z,
+            y,
+            libm::cos(h) * z - libm::sin(h) * x,
+        ]
+    };
+    let (a, b) = (turn(1.0), turn(-1.0));
+    if a[2] <= 1e-6 || b[2] <= 1e-6 {
+        return None;
+    }
+    let azimuth = |v: [f64; 3]| libm::atan2(v[1], v[0]).to_degrees();
+    Some(brdf(
+        libm::acos(a[2]).to_degrees(),
+        libm::acos(b[2]).to_degrees(),
+        azimuth(b) - azimuth(a),
+    ))
+}
+
+fn rms_from_truth(samples: &[Sample<f64>]) -> f64 {
+    let squares = samples.iter().map(|sample| {
+        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
+        let residual = report::ln_f(&Params::from_array(TRUTH), &geometry) - Real::ln(sample.brdf);
+        residual * residual
+    });
+    (squares.sum::<f64>() / samples.len() as f64).sqrt()
+}
+
+/// Reads a genuine file, if it is there.
+fn genuine(name: &str, options: &ReadOptions) -> Option<Vec<Measurement>> {
+    let path = shared(name);
+    if !path.exists() {
+        left_out(name, &path);
+        return None;
+    }
+    let bytes = fs::read(&path).expect("a readable file");
+    Some(input::parse(name, &bytes, options).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn dropping() -> ReadOptions {
+    ReadOptions {
+        drop_invalid: true,
+        ..ReadOptions::default()
+    }
+}
+
+/// The samples in plane of a scan at each row of a table of theta_i, theta_s in degrees and BRDF: how many were found within 1e-4 degrees, and the relative differences.
+fn compare(scan: &[Sample<f64>], table: &Path) -> (usize, Vec<f64>) {
+    let table = rows(table);
+    let differences = table.iter().filter_map(|row| {
+        let [theta_i, theta_s, brdf] = std::array::from_fn(|k| number(&row[k]));
+        let near = |a: f64, b: f64| (a - b.to_radians()).abs() < 2e-6;
+        let in_plane = |sample: &&Sample<f64>| {
+            let forward = sample.delta_phi == f64::PI;
+            let signed = if forward { sample.theta_s } else { -sample.theta_s };
+            (forward || sample.delta_phi == 0.0) && near(sample.theta_i, theta_i) && near(signed, theta_s)
+        };
+        Some(scan.iter().find(in_plane)?.brdf / brdf - 1.0)
+    });
+    let differences: Vec<f64> = differences.collect();
+    (table.len() - differences.len(), differences)
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn genuine_files_agree_with_tables_made_of_them() {
+    // Red of the garnet paint: the table has its plane of incidence, with six digits.
+    if let Some(scans) = genuine("formats/garnet_red_RGB.astm", &dropping()) {
+        let counts: Vec<usize> = scans.iter().map(|scan| scan.samples.len()).collect();
+        assert_eq!(counts, [1438, 1311, 1344]);
+        let (missing, differences) = compare(&scans[0].samples, &shared("real/cornell_garnet_red_R.csv"));
+        assert_eq!((missing, differences.iter().any(|x| x.abs() > 1e-4)), (0, false));
+    }
+    if let Some(scans) = genuine("formats/starlink_v15_chassis_lumos.csv", &dropping()) {
+        let (missing, differences) = compare(&scans[0].samples, &shared("real/raw/starlink_v15_chassis.csv"));
+        assert_eq!((missing, differences.iter().any(|x| x.abs() > 1e-4)), (0, false));
+    }
+    // These two were averaged and smoothed by their makers: the middle of the differences is small.
+    if let Some(scans) = genuine("formats/aeroglaze_z307_inplane_fred.txt", &dropping()) {
+        let (missing, differences) = compare(&scans[0].samples, &shared("real/rt300s_aeroglaze_z307_run1.csv"));
+        let middle = median(differences.iter().map(|x| x.abs()).collect());
+        println!("FRED: {missing} missing, median difference {middle:.3}");
+        assert_eq!(missing, 0);
+        check(middle, tolerance::FRED_SMOOTHED);
+    }
+    if let Some(scans) = genuine("formats/AnoBlackEC1onAlum.bsdf", &ReadOptions::default()) {
+        let (missing, differences) = compare(&scans[0].samples, &shared("real/rt300s_anoblack_ec1_al6061.csv"));
+        let middle = median(differences.iter().map(|x| x.abs()).collect());
+        println!(
+            "Zemax: {missing} missing of {}, median difference {middle:.3}",
+            missing + differences.len()
+        );
+        assert!(differences.len() > 50);
+        check(middle, tolerance::ZEMAX_AVERAGED);
+    }
+    if let Some(scans) = genuine("formats/bird_example.brdf", &ReadOptions::default()) {
+        let names: Vec<_> = scans.iter().filter_map(|scan| scan.name.as_deref()).collect();
+        assert_eq!(
+            (names.len(), names[0], names[1]),
+            (8, "550 nm 1 1 0 0", "550 nm 1 -1 0 0")
+        );
+        let sample = scans[7].samples[0];
+        assert_eq!(
+            (sample.theta_i, sample.theta_s, sample.brdf),
+            (0.0, 10f64.to_radians(), 0.301)
+        );
+    }
+    if let Some(scans) = genuine("formats/BrownVinyl_zemax_format_sample.bsdf", &ReadOptions::default()) {
+        assert_eq!((scans.len(), scans[0].samples.len()), (1, 640));
+    }
+}

@@ -1,4 +1,4 @@
-//! `Real::exp`, `ln` and `rsqrt`: at most 1 ulp over their domains, on a million points each.
+//! `Real::exp`, `ln`, `rsqrt` and `sin_cos`: at most 1 ulp over their domains, on a million points each.
 
 #![allow(
     clippy::disallowed_methods,
@@ -84,6 +84,26 @@ fn positives(least: f64, most: f64) -> impl Iterator<Item = f64> {
     all.filter(move |x| (least..=most).contains(x))
 }
 
+/// Angles up to 16: uniform, small ones by magnitude, and the neighbours of the multiples of pi/4 in `f64` and `f32`.
+fn angles() -> impl Iterator<Item = f64> {
+    let edges = (-20..=20).flat_map(|k| {
+        let edge = f64::from(k) * std::f64::consts::FRAC_PI_4;
+        let single = edge as f32;
+        let near = (-40..40).map(move |i| edge * (1.0 + f64::from(i) * 0.5 * f64::EPSILON));
+        let nearest = [single, single.next_up(), single.next_down()].map(f64::from);
+        near.chain(nearest)
+    });
+    let random = words().take(POINTS).enumerate().map(|(i, word)| {
+        let turn = 32.0 * unit(word) - 16.0;
+        if i % 4 == 0 {
+            turn * 2f64.powf(-40.0 * unit(word.rotate_left(32)))
+        } else {
+            turn
+        }
+    });
+    [0.0, -16.0, 16.0].into_iter().chain(edges).chain(random)
+}
+
 fn exact_exp(x: f64) -> (Wide, i32) {
     Wide::new(x).exp()
 }
@@ -135,6 +155,23 @@ fn rsqrt_f64() {
     assert!(worst <= 1.0);
 }
 
+#[test]
+fn sin_cos_f64() {
+    let worst = angles().map(|x| {
+        let (got, exact) = (Real::sin_cos(x), Wide::sin_cos(x));
+        if x == 0.0 {
+            assert_eq!(got, (0.0, 1.0));
+            return 0.0;
+        }
+        assert_eq!(Real::sin_cos(-x), (-got.0, got.1));
+        ulps(got.0, exact.0, 53).max(ulps(got.1, exact.1, 53))
+    });
+    let worst = worst.fold(0.0, f64::max);
+    println!("sin, cos f64: {worst:.4} ulp");
+    check(worst, tolerance::SIN_COS_F64);
+    assert!(worst <= 1.0);
+}
+
 /// Largest error of an f32 function against one of f64, whose own error is 10^-9 of an f32 ulp.
 fn worst_f32(points: impl Iterator<Item = f64>, got: fn(f32) -> f32, exact: fn(f64) -> f64) -> f64 {
     points
@@ -182,6 +219,33 @@ fn rsqrt_f32() {
 }
 
 #[test]
+fn sin_cos_f32() {
+    let sin = worst_f32(angles(), |x| Real::sin_cos(x).0, libm::sin);
+    let cos = worst_f32(angles(), |x| Real::sin_cos(x).1, libm::cos);
+    println!("sin f32: {sin:.4} ulp, cos f32: {cos:.4} ulp");
+    check(sin.max(cos), tolerance::SIN_COS_F32);
+    assert!(sin.max(cos) <= 1.0);
+}
+
+/// Beyond 16 the angle is no longer exact enough for 1 ulp, but the promised 1e-4 holds up to 1000, and further away there is still a point of the circle.
+#[test]
+fn far_angles() {
+    for x in angles().map(|x| x * 62.0) {
+        let ((sin, cos), x) = (Real::sin_cos(x as f32), f64::from(x as f32));
+        let error = (f64::from(sin) - libm::sin(x))
+            .abs()
+            .max((f64::from(cos) - libm::cos(x)).abs());
+        assert!(error <= 1e-4, "{x}: {error:e}");
+    }
+    for x in [1e4, 1e10, 1e30, f64::MAX, f64::NAN] {
+        let (sin, cos) = Real::sin_cos(x);
+        assert!((sin * sin + cos * cos - 1.0).abs() < 1e-15);
+        let (sin, cos) = Real::sin_cos(x as f32);
+        assert!((sin * sin + cos * cos - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
 fn limits() {
     assert_eq!(Real::exp(-1e300f64), Real::exp(-708.0f64));
     assert_eq!(Real::exp(1e300f64), Real::exp(709.0f64));
@@ -215,6 +279,10 @@ fn oracle() {
             Wide::rsqrt(reduced, 1.0 / reduced.sqrt()),
             &(big(1.0) / exact),
         ));
+    }
+    for x in angles().skip(3).step_by(997) {
+        let (wide, exact) = (Wide::sin_cos(x), big(x).sin_cos());
+        worst = worst.max(relative(wide.0, &exact.0)).max(relative(wide.1, &exact.1));
     }
     println!("oracle: {worst:.1e} relative");
     check(worst, tolerance::ORACLE);

@@ -96,7 +96,7 @@ fn run_all<R: Real, const TERMS: u8, const P: usize>(
         assert_sound(&scan, &bounds, first, &paper_fit(&scan, &bounds, 1, i, &options));
     }
     let found = search(&scan, &bounds, 1, 64, &options);
-    let best = found.minima.best().expect("a search finds a minimum").fit;
+    let best = found.best;
     assert_sound(&scan, &bounds, R::MAX, &best);
     best.at.cost.f64()
 }

@@ -7,6 +7,8 @@ mod programs;
 
 use std::path::Path;
 
+use brdfit_core::geometry::Geometry;
+
 #[test]
 fn host_writes_the_lines_of_firmware() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/programs");
@@ -23,6 +25,23 @@ fn host_writes_the_lines_of_firmware() {
         }
         assert_eq!(lines.len(), expected.len(), "{name}.out: number of lines");
     }
+}
+
+#[test]
+fn table_is_what_the_host_computes() {
+    let table: Vec<_> = programs::scan::samples::<f32>()
+        .step_by(programs::tabled::STEP)
+        .map(|sample| Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).unwrap())
+        .collect();
+    if std::env::var_os("BLESS").is_some() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/programs/tabled.table");
+        let rows: String = table.iter().map(|geometry| format!("    {geometry:?},\n")).collect();
+        std::fs::write(file, format!("[\n{rows}]\n")).unwrap();
+    }
+    assert!(
+        table == programs::tabled::TABLE,
+        "BLESS=1 writes it anew; then once more, for what is compiled in"
+    );
 }
 
 /// Name and version of each package of a lock file.

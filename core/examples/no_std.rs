@@ -16,7 +16,7 @@ const P: usize = parameters(TERMS);
 const BLOCKS: usize = 64 / LANES;
 
 /// The parameters that fit `samples` best, and the sum of squared residuals of ln f; samples beyond the room are left out.
-fn fit(samples: impl Iterator<Item = Sample<f32>>) -> Result<Option<(Params<f32>, f32)>, SampleError> {
+fn fit(samples: impl Iterator<Item = Sample<f32>>) -> Result<(Params<f32>, f32), SampleError> {
     let mut blocks = [Block::empty(); BLOCKS];
     for (row, sample) in samples.take(BLOCKS * LANES).enumerate() {
         blocks[row / LANES].set(row % LANES, &Observation::new(&sample)?);
@@ -26,10 +26,7 @@ fn fit(samples: impl Iterator<Item = Sample<f32>>) -> Result<Option<(Params<f32>
     let upper = Params::from_array([1.0, 100.0, 100.0, 10.0, 100.0, 100.0]);
     let bounds = Scan::<f32, TERMS, P>::bounds(&lower, &upper);
     let found = search(&scan, &bounds, 0, CANDIDATES, &Options::default());
-    Ok(found
-        .minima
-        .best()
-        .map(|best| (Scan::<f32, TERMS, P>::params(&best.fit.x), best.fit.at.cost)))
+    Ok((Scan::<f32, TERMS, P>::params(&found.best.x), found.best.at.cost))
 }
 
 fn main() {
@@ -52,8 +49,7 @@ fn main() {
         ))
     });
     match fit(samples) {
-        Ok(Some((params, cost))) => println!("cost {cost:e}\n{params:#?}"),
-        Ok(None) => println!("no fit"),
+        Ok((params, cost)) => println!("cost {cost:e}\n{params:#?}"),
         Err(error) => println!("{error}"),
     }
 }

@@ -20,14 +20,16 @@ pub const NAMES: [&str; 6] = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"];
 
 /// Is parameter `index` of [`NAMES`] part of `terms`?
 pub const fn has(terms: u8, index: usize) -> bool {
-    match index {
-        0 => terms & DIFFUSE != 0,
-        1 => terms & SURFACE != 0,
-        2 => terms & VOLUME != 0,
-        3 | 4 => terms & (SURFACE | VOLUME) != 0,
-        5 => terms & ABSORBING != 0 && terms & (SURFACE | VOLUME) != 0,
-        _ => false,
-    }
+    present(terms) >> index & 1 != 0
+}
+
+/// Bit i tells whether parameter i of [`NAMES`] is part of `terms`.
+const fn present(terms: u8) -> u32 {
+    let weights = (terms & (DIFFUSE | SURFACE | VOLUME)) as u32;
+    let lobes = terms & (SURFACE | VOLUME) != 0;
+    let m_and_n = if lobes { 0b011_000 } else { 0 };
+    let kappa = if lobes && terms & ABSORBING != 0 { 0b100_000 } else { 0 };
+    weights | m_and_n | kappa
 }
 
 /// Number of parameters of `terms`.
@@ -37,19 +39,12 @@ pub const fn parameters(terms: u8) -> usize {
 
 /// Place of parameter `index` among those of `terms`.
 pub const fn slot(terms: u8, index: usize) -> usize {
-    let mut place = 0;
-    let mut i = 0;
-    while i < index {
-        if has(terms, i) {
-            place += 1;
-        }
-        i += 1;
-    }
-    place
+    (present(terms) & ((1 << index) - 1)).count_ones() as usize
 }
 
 /// The six parameters of Eq. 14, all dimensionless; those of absent terms are 0, and n is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Params<R> {
     /// Diffuse reflectance.
     pub rho_d: R,
@@ -85,6 +80,7 @@ impl<R: Real> Params<R> {
 
 /// The model with its parameters, and what follows from them alone; `TERMS` is what the scene needs, and what is left out costs nothing.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Brdf<R, const TERMS: u8> {
     rho_d_pi: R,
     /// Of the surface and the volume lobe.

@@ -10,7 +10,7 @@ use crate::start;
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS, P> {
     /// Candidate `i`: m, n and kappa spread evenly over the logarithm of their ranges, then the weights that fit best.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
         let mut x = bounds.lower;
         let u = start::even::<R, 3>(seed, i);
@@ -56,7 +56,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
 
 impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds; one pass.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn set_weights(&self, x: &mut [R; P], bounds: &Bounds<R, P>) {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut normal = [[[R::ZERO; SUMS]; 3]; 3];

@@ -8,6 +8,7 @@ use crate::real::Real;
 
 /// The index of refraction, and what follows from it alone.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Index<R> {
     n: R,
     pub kappa: R,

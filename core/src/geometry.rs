@@ -7,6 +7,7 @@ pub const LANES: usize = 16;
 
 /// One measured value of the BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample<R> {
     /// Angle of incidence, radians, `0 <= theta_i < pi/2`.
     pub theta_i: R,
@@ -35,6 +36,7 @@ impl<R: Real> Sample<R> {
 
 /// Why a [`Sample`] is no valid [`Observation`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SampleError {
     /// An angle, the BRDF or the weight is NaN or infinite.
     NotFinite,
@@ -57,6 +59,7 @@ impl core::error::Error for SampleError {}
 
 /// The parameter-free part of one lobe in one pair of directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LobeGeometry<R> {
     /// tan^2 of the angle between surface normal and facet normal, theta_h or theta_he (Eq. 13); dimensionless.
     pub tan2_theta_h: R,
@@ -66,10 +69,14 @@ pub struct LobeGeometry<R> {
     pub factor: R,
 }
 
-/// The parameter-free part of the model in one pair of directions; one that exists is valid.
+/// The parameter-free part of the model in one pair of directions, from [`Geometry::new`].
+///
+/// A firmware that measures at known angles can hold a table of these that a host has computed: then it has no trigonometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Geometry<R> {
-    pub(crate) lobes: [LobeGeometry<R>; 2],
+    /// Of the surface lobe and of the volume lobe.
+    pub lobes: [LobeGeometry<R>; 2],
 }
 
 /// Place of the surface lobe; its factor is `sigma G_c / (pi cos^4 theta_h)` (Eq. 7, 8, 9).
@@ -151,8 +158,9 @@ impl<R: Real> Geometry<R> {
     }
 }
 
-/// Geometry and measured ln f of one sample; one that exists is valid.
+/// Geometry and measured ln f of one sample; one that [`Observation::new`] made is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Observation<R> {
     /// Where the sample was measured.
     pub geometry: Geometry<R>,
@@ -168,23 +176,32 @@ impl<R: Real> Observation<R> {
     /// # Errors
     /// [`SampleError`] tells what is wrong with the sample.
     pub fn new(sample: &Sample<R>) -> Result<Self, SampleError> {
-        if !(sample.brdf.is_finite() && sample.weight.is_finite()) {
+        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)?;
+        Self::at(geometry, sample.brdf, sample.weight)
+    }
+
+    /// The observation of `brdf`, in sr^-1, where the geometry is known; the sign of its weight does not count.
+    ///
+    /// # Errors
+    /// [`SampleError::NotFinite`] and [`SampleError::NotPositive`].
+    pub fn at(geometry: Geometry<R>, brdf: R, weight: R) -> Result<Self, SampleError> {
+        if !(brdf.is_finite() && weight.is_finite()) {
             return Err(SampleError::NotFinite);
         }
-        if !(sample.brdf >= R::MIN_POSITIVE) {
+        if !(brdf >= R::MIN_POSITIVE) {
             return Err(SampleError::NotPositive);
         }
-        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)?;
         Ok(Observation {
             geometry,
-            ln_f: sample.brdf.ln(),
-            weight: sample.weight.abs(),
+            ln_f: brdf.ln(),
+            weight: weight.abs(),
         })
     }
 }
 
 /// `L` observations, lane by lane; empty lanes have weight 0 and add exactly 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(align(64))]
 pub struct Block<R, const L: usize = LANES> {
     pub(crate) tan2_theta_h: [[R; L]; 2],

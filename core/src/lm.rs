@@ -5,6 +5,7 @@ use crate::real::Real;
 
 /// Sum of squared residuals with its first-order model.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Linearization<R, const P: usize> {
     /// Sum of squared residuals r.
     pub cost: R,
@@ -29,6 +30,7 @@ pub trait Problem<R, const P: usize> {
 
 /// `lower <= x <= upper` for each parameter; equal bounds hold it fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bounds<R, const P: usize> {
     /// Least values.
     pub lower: [R; P],
@@ -49,6 +51,7 @@ impl<R: Real, const P: usize> Bounds<R, P> {
 
 /// When to stop, and how carefully to begin.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Options<R> {
     /// See [`Stop::Cost`]; dimensionless.
     pub cost_tolerance: R,
@@ -73,6 +76,7 @@ impl<R: Real> Default for Options<R> {
 
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stop {
     /// Converged: with a damping of at most 1e-2 the linear model promises a reduction of at most `cost_tolerance * cost`.
     Cost,
@@ -93,6 +97,7 @@ impl Stop {
 
 /// Where a fit is; copied, it can be continued later.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fit<R, const P: usize> {
     /// Best parameters so far.
     pub x: [R; P],
@@ -113,16 +118,30 @@ impl<R: Real, const P: usize> Fit<R, P> {
     pub fn begin(problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, start: [R; P], options: &Options<R>) -> Self {
         let x = bounds.clamp(start);
         let at = problem.linearize(&x);
-        let stop = if is_finite(&at) { None } else { Some(Stop::NotFinite) };
-        Fit {
+        let mut fit = Fit {
             x,
             at,
             passes: 1,
-            stop,
+            stop: None,
             damping: options.damping,
             growth: R::of(2.0),
             scale: core::array::from_fn(|i| at.hessian[i][i]),
+        };
+        if !is_finite(&at) {
+            fit.end(Stop::NotFinite);
         }
+        fit
+    }
+
+    fn end(&mut self, stop: Stop) {
+        self.stop = Some(stop);
+        #[cfg(feature = "defmt")]
+        defmt::info!(
+            "fit: cost {=f64} after {=u32} passes, {}",
+            self.at.cost.f64(),
+            self.passes,
+            stop
+        );
     }
 
     /// Makes steps until the fit ends, or has made `passes` in all.
@@ -138,8 +157,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             return;
         }
         if self.passes >= options.max_passes {
-            self.stop = Some(Stop::Passes);
-            return;
+            return self.end(Stop::Passes);
         }
         let Linearization {
             cost,
@@ -177,8 +195,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
         }
         if !moved {
-            self.stop = Some(Stop::Step);
-            return;
+            return self.end(Stop::Step);
         }
         let mut predicted = R::ZERO;
         for i in 0..P {
@@ -189,8 +206,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             predicted -= step[i] * (gradient[i] + gradient[i] + h_step);
         }
         if self.damping <= R::of(1e-2) && !(predicted > options.cost_tolerance * cost) {
-            self.stop = Some(Stop::Cost);
-            return;
+            return self.end(Stop::Cost);
         }
         let trial = problem.linearize(&x);
         self.passes += 1;

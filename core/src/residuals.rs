@@ -10,6 +10,7 @@ use crate::real::Real;
 ///
 /// The solver's coordinates are those parameters in the order of [`crate::brdf::NAMES`], with kappa^2 in place of kappa: F is even in kappa, so a search in kappa can not leave 0.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
     /// cos theta_d nearest to the peak of each lobe.
@@ -141,7 +142,7 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn cost(&self, x: &[R; P]) -> R {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut squares = [R::ZERO; SUMS];
@@ -180,7 +181,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         bent
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut squares = [R::ZERO; SUMS];

@@ -27,7 +27,7 @@ use core::ops::Range;
 use heapless::Vec;
 
 use crate::lm::{self, Bounds, Fit, Options, Problem};
-use crate::minima::Minima;
+use crate::minima::{self, Minima};
 use crate::real::Real;
 use crate::start;
 
@@ -65,6 +65,7 @@ pub trait Scene<R, const P: usize>: Problem<R, P> {
 
 /// How many evaluations were made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Evaluations {
     /// Passes over the scan without derivatives.
     pub cost: u32,
@@ -74,11 +75,31 @@ pub struct Evaluations {
 
 /// What a search found.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Found<R, const P: usize> {
+    /// The fit that ended in the best of them.
+    pub best: Fit<R, P>,
     /// Distinct minima, best first.
     pub minima: Minima<R, P, MINIMA>,
     /// What it cost.
     pub evaluations: Evaluations,
+}
+
+impl<R: Real, const P: usize> Found<R, P> {
+    fn new(best: Fit<R, P>, minima: Minima<R, P, MINIMA>, evaluations: Evaluations) -> Self {
+        #[cfg(feature = "defmt")]
+        defmt::info!(
+            "search: cost {=f64}, {=usize} minima, {}",
+            best.at.cost.f64(),
+            minima.as_slice().len(),
+            evaluations
+        );
+        Found {
+            best,
+            minima,
+            evaluations,
+        }
+    }
 }
 
 /// Fit `i` of the paper's method: from a start uniform over the bounds to convergence (section 3 of the paper).
@@ -107,13 +128,11 @@ pub fn paper<R: Real, const P: usize>(
         evaluations.linearize += fit.passes;
         minima.add(&fit, i as u64);
     }
-    if let Some(best) = minima.best() {
-        let start = best.first_start;
-        let again = lm::fit(problem, bounds, best.fit.x, options);
-        evaluations.linearize += again.passes;
-        minima.refine(&again, start);
-    }
-    Found { minima, evaluations }
+    let start = minima.best().map_or(bounds.lower, |best| best.x);
+    let best = lm::fit(problem, bounds, start, options);
+    evaluations.linearize += best.passes;
+    minima.refine(&best);
+    Found::new(best, minima, evaluations)
 }
 
 /// The default method; `candidates` limits the number of candidates, not counting the variations.
@@ -124,37 +143,41 @@ pub fn search<R: Real, const P: usize>(
     candidates: u32,
     options: &Options<R>,
 ) -> Found<R, P> {
-    let mut found = Found {
-        minima: Minima::default(),
-        evaluations: Evaluations::default(),
-    };
     let rough = Options {
         cost_tolerance: options.cost_tolerance.max(R::of(ROUGH)),
         max_passes: options.max_passes.min(ROUGH_PASSES),
         ..*options
     };
-    let search = Search {
+    let mut search = Search {
         scene,
         bounds,
         seed,
         options: &rough,
+        best: None,
+        minima: Minima::default(),
+        evaluations: Evaluations::default(),
     };
     let mut made = 0;
-    while made < candidates.max(1) && found.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS) {
+    while made < candidates.max(1) && search.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS) {
         let end = made.saturating_add(ROUND).min(candidates.max(1));
-        search.round(made..end, None, &STAGES, &mut found);
+        search.round(made..end, None, &STAGES);
         made = end;
     }
-    if let Some(best) = found.minima.best().map(|best| best.fit.x) {
-        search.round(0..VARIATIONS, Some(&best), &VARIATION_STAGES, &mut found);
-    }
-    if let Some(best) = found.minima.best_mut() {
-        let before = best.fit.passes;
-        best.fit.stop = None;
-        best.fit.run(scene, bounds, options, u32::MAX);
-        found.evaluations.linearize += best.fit.passes - before;
-    }
-    found
+    let like = search.best.map(|best| best.x);
+    search.round(0..VARIATIONS, like.as_ref(), &VARIATION_STAGES);
+    let Search {
+        best,
+        mut minima,
+        mut evaluations,
+        ..
+    } = search;
+    let mut best = best.unwrap_or_else(|| Fit::begin(scene, bounds, bounds.lower, options));
+    let before = best.passes;
+    best.stop = None;
+    best.run(scene, bounds, options, u32::MAX);
+    evaluations.linearize += best.passes - before;
+    minima.refine(&best);
+    Found::new(best, minima, evaluations)
 }
 
 struct Search<'a, R, S, const P: usize> {
@@ -162,66 +185,57 @@ struct Search<'a, R, S, const P: usize> {
     bounds: &'a Bounds<R, P>,
     seed: u64,
     options: &'a Options<R>,
+    /// The fit that ended in the best minimum.
+    best: Option<Fit<R, P>>,
+    minima: Minima<R, P, MINIMA>,
+    evaluations: Evaluations,
 }
 
 impl<R: Real, S: Scene<R, P>, const P: usize> Search<'_, R, S, P> {
     /// Candidates by cost, short fits of the best, convergence of the best of those.
-    fn round(&self, indices: Range<u32>, like: Option<&[R; P]>, stages: &[(usize, u32)], found: &mut Found<R, P>) {
-        let keep = stages[0].0;
-        let mut best: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
+    fn round(&mut self, indices: Range<u32>, like: Option<&[R; P]>, stages: &[(usize, u32)]) {
+        let mut candidates: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
+        let keep = stages.first().map_or(KEPT, |stage| stage.0);
         for i in indices {
             let x = self.scene.candidate(self.bounds, self.seed, u64::from(i), like);
             let cost = self.scene.cost(&x);
-            found.evaluations.cost += 2;
-            let place = best.iter().position(|other| cost < other.0).unwrap_or(best.len());
-            if best.len() >= keep {
-                if place >= keep {
-                    continue;
-                }
-                best.pop();
-            }
-            let _ = best.insert(place, (cost, i, x));
+            self.evaluations.cost += 2;
+            minima::insert(&mut candidates, keep, (cost, i, x), |candidate| candidate.0);
         }
         let mut fits: Vec<(Fit<R, P>, u32), KEPT> = Vec::new();
-        for &(_, i, x) in &best {
+        for &(_, i, x) in &candidates {
             let _ = fits.push((Fit::begin(self.scene, self.bounds, x, self.options), i));
         }
         for &(count, passes) in stages {
             while fits.len() > count {
                 let dropped = fits.pop();
-                found.evaluations.linearize += dropped.map_or(0, |(fit, _)| fit.passes);
+                self.evaluations.linearize += dropped.map_or(0, |(fit, _)| fit.passes);
             }
             for (fit, i) in fits.iter_mut() {
                 if passes == u32::MAX {
-                    self.converge(fit, u64::from(*i), found);
+                    self.converge(fit, u64::from(*i));
                 } else {
                     fit.run(self.scene, self.bounds, self.options, passes);
                 }
             }
-            sort(&mut fits);
+            for end in 1..=fits.len() {
+                minima::sift(fits.get_mut(..end).unwrap_or_default(), |(fit, _)| fit.at.cost);
+            }
         }
     }
 
     /// Fits to convergence, or until it is plain that the fit joins a minimum already found.
-    fn converge(&self, fit: &mut Fit<R, P>, start: u64, found: &mut Found<R, P>) {
-        while fit.stop.is_none() && !found.minima.join(fit, start) {
+    fn converge(&mut self, fit: &mut Fit<R, P>, start: u64) {
+        while fit.stop.is_none() && !self.minima.join(fit, start) {
             let passes = fit.passes + 2;
             fit.run(self.scene, self.bounds, self.options, passes);
         }
         if fit.stop.is_some() {
-            found.minima.add(fit, start);
+            self.minima.add(fit, start);
         }
-        found.evaluations.linearize += fit.passes;
-    }
-}
-
-/// By cost, stable.
-fn sort<R: Real, const P: usize>(fits: &mut [(Fit<R, P>, u32)]) {
-    for end in 1..fits.len() {
-        let mut place = end;
-        while place > 0 && fits[place].0.at.cost < fits[place - 1].0.at.cost {
-            fits.swap(place, place - 1);
-            place -= 1;
+        if self.best.is_none_or(|best| fit.at.cost < best.at.cost) {
+            self.best = Some(*fit);
         }
+        self.evaluations.linearize += fit.passes;
     }
 }

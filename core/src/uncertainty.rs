@@ -5,6 +5,7 @@ use crate::real::Real;
 
 /// Where a parameter ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Place {
     /// Between its bounds.
     Inside,
@@ -22,6 +23,7 @@ pub enum Place {
 ///
 /// Sums over the axes are sums of squares, so that what is determined keeps its digits beside what is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Axes<R, const P: usize> {
     /// Row k is the displacement of the parameters along axis k that raises the cost by [`Uncertainty::scale`] squared; 0 for parameters that are held.
     ///
@@ -81,6 +83,7 @@ impl<R: Real, const P: usize> Axes<R, P> {
 
 /// What the residuals at an optimum tell about its parameters, for residuals of equal and independent errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Uncertainty<R, const P: usize> {
     /// Standard deviation of a residual, the root of cost over degrees of freedom; infinite without any.
     pub scale: R,

@@ -258,13 +258,13 @@ fn run<R: Real, const TERMS: u8, const P: usize>(
         .as_slice()
         .iter()
         .map(|minimum| Minimum {
-            mse2: mse2(minimum.fit.at.cost),
-            params: params(&minimum.fit.x),
+            mse2: mse2(minimum.cost),
+            params: params(&minimum.x),
             hits: minimum.hits,
             first_start: minimum.first_start,
         })
         .collect();
-    let best = found.minima.best().expect("a search makes at least one fit").fit;
+    let best = found.best;
     let at_bound = (0..NAMES.len())
         .filter(|&index| has(TERMS, index))
         .filter(|&index| {

@@ -85,6 +85,36 @@ impl Wide {
         Wide::new(near).plus(e).plus(e2.scaled(-0.5)).plus(cubic)
     }
 
+    /// Sine and cosine.
+    pub fn sin_cos(x: f64) -> (Self, Self) {
+        const HALF_PI: [f64; 3] = [
+            f64::from_bits(0x3ff9_21fb_5444_2d18),
+            f64::from_bits(0x3c91_a626_3314_5c07),
+            f64::from_bits(0xb91f_1976_b7ed_8fbc),
+        ];
+        let k = (x / HALF_PI[0]).round();
+        let mut r = Wide::new(x);
+        for part in HALF_PI {
+            r = r.plus(two_product(-k, part));
+        }
+        // Taylor's series, from the end: term i is the one before it times -r^2 / (i (i - 1)).
+        let less_r2 = r.times(r).scaled(-1.0);
+        let one = Wide::new(1.0);
+        let series = |last: i32| {
+            (2..=last).rev().step_by(2).fold(one, |sum, i| {
+                let quotient = less_r2.times(reciprocal(f64::from(i * (i - 1))));
+                one.plus(quotient.times(sum))
+            })
+        };
+        let (sin, cos) = (r.times(series(29)), series(28));
+        match (k as i64).rem_euclid(4) {
+            0 => (sin, cos),
+            1 => (cos, sin.scaled(-1.0)),
+            2 => (sin.scaled(-1.0), cos.scaled(-1.0)),
+            _ => (cos.scaled(-1.0), sin),
+        }
+    }
+
     /// 1 / sqrt(x) of a number whose square neither over- nor underflows, from `near`.
     pub fn rsqrt(x: f64, near: f64) -> Self {
         let h = Wide::new(1.0).plus(two_product(near, near).times(Wide::new(-x)));

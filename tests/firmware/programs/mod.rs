@@ -8,6 +8,7 @@ pub mod model;
 pub mod scan;
 pub mod search;
 pub mod stream;
+pub mod tabled;
 
 use core::fmt::{self, Write};
 
@@ -20,12 +21,13 @@ use brdfit_core::residuals::Scan;
 pub type Program = fn(&mut dyn Write) -> fmt::Result;
 
 /// All of them, by name.
-pub const PROGRAMS: [(&str, Program); 5] = [
+pub const PROGRAMS: [(&str, Program); 6] = [
     ("model", model::run),
     ("fit", fit::run),
     ("search", search::run),
     ("stream", stream::run),
     ("budget", budget::run),
+    ("tabled", tabled::run),
 ];
 
 /// Parameters of all terms.
@@ -65,8 +67,13 @@ pub fn report<R: Real>(out: &mut dyn Write, fit: &Fit<R, P>) -> fmt::Result {
         Some(Stop::NotFinite) => "not finite",
     };
     writeln!(out, "  passes {} stop {stop}", fit.passes)?;
-    number(out, "cost", fit.at.cost)?;
-    let params = Scan::<R, ALL, P>::params(&fit.x).to_array();
+    point(out, fit.at.cost, &fit.x)
+}
+
+/// Cost and parameters.
+pub fn point<R: Real>(out: &mut dyn Write, cost: R, x: &[R; P]) -> fmt::Result {
+    number(out, "cost", cost)?;
+    let params = Scan::<R, ALL, P>::params(x).to_array();
     for (name, value) in NAMES.into_iter().zip(params) {
         number(out, name, value)?;
     }

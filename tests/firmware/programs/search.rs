@@ -8,7 +8,7 @@ use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{CANDIDATES, search};
 
-use super::{P, report, scan, table_1};
+use super::{P, point, report, scan, table_1};
 
 pub fn run(out: &mut dyn Write) -> fmt::Result {
     writeln!(out, "f64")?;
@@ -26,13 +26,14 @@ fn whole<R: Real>(out: &mut dyn Write) -> fmt::Result {
         " evaluations cost {} linearize {}",
         found.evaluations.cost, found.evaluations.linearize
     )?;
+    report(out, &found.best)?;
     for minimum in found.minima.as_slice() {
         writeln!(
             out,
             " minimum hits {} first_start {}",
             minimum.hits, minimum.first_start
         )?;
-        report(out, &minimum.fit)?;
+        point(out, minimum.cost, &minimum.x)?;
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ mod programs;
 use core::hint::black_box;
 
 use brdfit_core::brdf::{self, ALL, Params};
-use brdfit_core::geometry::{Block, LANES, Observation, Sample};
+use brdfit_core::geometry::{Block, Geometry, LANES, LobeGeometry, Observation, Sample};
 use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
@@ -31,6 +31,9 @@ const USE: u8 = match option_env!("BRDFIT_USE") {
     Some(text) => text.as_bytes()[0],
     None => b'c',
 };
+
+/// Geometry comes from a table that the host made, not from angles.
+const TABLED: bool = matches!(option_env!("BRDFIT_GEOMETRY"), Some(text) if text.as_bytes()[0] == b't');
 
 const fn digits(text: &[u8]) -> u8 {
     let (mut value, mut i) = (0, 0);
@@ -66,12 +69,23 @@ fn start<R: Real>() -> [R; P] {
 
 /// Samples that nobody knows go in, parameters go out.
 fn image<R: Real>() {
-    let zero = Sample::in_plane(R::ZERO, R::ZERO, R::ZERO);
-    let samples = black_box([zero; scan::SAMPLES]);
+    let sample = black_box(Sample::in_plane(R::ZERO, R::ZERO, R::ZERO));
+    let geometry = black_box(Geometry {
+        lobes: [LobeGeometry {
+            tan2_theta_h: R::ZERO,
+            cos_theta_d: R::ONE,
+            factor: R::ONE,
+        }; 2],
+    });
     let mut blocks = [Block::<R>::empty(); scan::BLOCKS];
-    for (samples, block) in samples.chunks(LANES).zip(&mut blocks) {
-        for (lane, sample) in samples.iter().enumerate() {
-            if let Ok(observation) = Observation::new(sample) {
+    for block in &mut blocks {
+        for lane in 0..LANES {
+            let observation = if TABLED {
+                Observation::at(geometry, sample.brdf, sample.weight)
+            } else {
+                Observation::new(&sample)
+            };
+            if let Ok(observation) = observation {
                 block.set(lane, &observation);
             }
         }
@@ -81,7 +95,7 @@ fn image<R: Real>() {
         black_box(lm::fit(&scan, &bounds(), start(), &Options::default()).x);
     } else {
         let found = search(&scan, &bounds(), 0, CANDIDATES, &Options::default());
-        black_box(found.minima.best().map(|best| best.fit.x));
+        black_box(found.best.x);
     }
 }
 

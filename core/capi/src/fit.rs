@@ -1,0 +1,267 @@
+//! Fits and searches, for the set of terms that was chosen.
+
+use core::mem::MaybeUninit;
+
+use brdfit_core::brdf::{ALL, Params, parameters};
+use brdfit_core::geometry::Block;
+use brdfit_core::lm::Fit;
+use brdfit_core::real::Real;
+use brdfit_core::residuals::Scan;
+use brdfit_core::search::Scene;
+
+use crate::Done;
+use crate::memory::{changed, input, output, outputs};
+use crate::options::{bounds, lm_options, options_at};
+use crate::scan::blocks_of;
+use crate::types::*;
+
+/// What lies in a [`brdfit_fit`].
+#[repr(C)]
+pub struct State<R> {
+    /// [`begun`], if it was.
+    begun: u32,
+    options: brdfit_options<R>,
+    /// A `Fit<R, P>` for the P of the terms.
+    fit: MaybeUninit<Fit<R, { parameters(ALL) }>>,
+}
+
+/// Tells memory that holds a fit from memory that holds anything.
+fn begun<R>() -> u32 {
+    0xb2df_1700 | size_of::<R>() as u32
+}
+
+impl<R> State<R> {
+    /// The place of the fit.
+    fn fit<const P: usize>(&self) -> *const Fit<R, P> {
+        const { assert!(size_of::<Fit<R, P>>() <= size_of::<Fit<R, { parameters(ALL) }>>()) };
+        self.fit.as_ptr().cast()
+    }
+
+    /// The same, to be changed.
+    fn fit_mut<const P: usize>(&mut self) -> *mut Fit<R, P> {
+        const { assert!(size_of::<Fit<R, P>>() <= size_of::<Fit<R, { parameters(ALL) }>>()) };
+        self.fit.as_mut_ptr().cast()
+    }
+}
+
+/// Calls a function of any set of terms with those chosen at run time.
+macro_rules! with_terms {
+    ($terms:expr, $function:ident::<$R:ident>($($argument:expr),*)) => {
+        match $terms {
+            0b1111 => $function::<$R, 0b1111, 6>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b0001 => $function::<$R, 0b0001, 1>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b0010 => $function::<$R, 0b0010, 3>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b1010 => $function::<$R, 0b1010, 4>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b1110 => $function::<$R, 0b1110, 5>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b0011 => $function::<$R, 0b0011, 4>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b1011 => $function::<$R, 0b1011, 5>($($argument),*),
+            #[cfg(feature = "sets")]
+            0b0111 => $function::<$R, 0b0111, 5>($($argument),*),
+            _ => Err(brdfit_error::Terms),
+        }
+    };
+}
+
+fn enough<const P: usize>(samples: usize) -> Done {
+    if samples < P { Err(brdfit_error::TooFew) } else { Ok(()) }
+}
+
+pub unsafe fn candidate<R: Real>(
+    scan: *const brdfit_scan<R>,
+    options: *const brdfit_options<R>,
+    index: u64,
+    start: *mut brdfit_params<R>,
+) -> Done {
+    // SAFETY: the contract of the header.
+    let ((blocks, samples), options, start) = unsafe { (blocks_of(scan)?, options_at(options)?, output(start)?) };
+    start.write(with_terms!(
+        options.terms,
+        candidate_of::<R>(blocks, samples, &options, index)
+    )?);
+    Ok(())
+}
+
+// Each set of terms has a stack frame of its own, or that of the caller would hold those of all.
+#[inline(never)]
+fn candidate_of<R: Real, const TERMS: u8, const P: usize>(
+    blocks: &[Block<R>],
+    samples: usize,
+    options: &brdfit_options<R>,
+    index: u64,
+) -> Result<brdfit_params<R>, brdfit_error> {
+    enough::<P>(samples)?;
+    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let x = scan.candidate(&bounds::<R, TERMS, P>(options), options.seed, index, None);
+    Ok(Scan::<R, TERMS, P>::params(&x).into())
+}
+
+pub unsafe fn fit_begin<R: Real>(
+    fit: *mut brdfit_fit<R>,
+    scan: *const brdfit_scan<R>,
+    start: *const brdfit_params<R>,
+    options: *const brdfit_options<R>,
+) -> Done {
+    // SAFETY: the contract of the header; a `State` is no larger than a `brdfit_fit`.
+    let (state, (blocks, samples), start, options) = unsafe {
+        (
+            output(fit.cast::<State<R>>())?,
+            blocks_of(scan)?,
+            input(start)?,
+            options_at(options)?,
+        )
+    };
+    if !Params::from(*start).to_array().iter().all(|value| value.is_finite()) {
+        return Err(brdfit_error::NotFinite);
+    }
+    with_terms!(
+        options.terms,
+        fit_begin_of::<R>(state, blocks, samples, start, &options)
+    )
+}
+
+#[inline(never)]
+fn fit_begin_of<R: Real, const TERMS: u8, const P: usize>(
+    state: &mut MaybeUninit<State<R>>,
+    blocks: &[Block<R>],
+    samples: usize,
+    start: &brdfit_params<R>,
+    options: &brdfit_options<R>,
+) -> Done {
+    enough::<P>(samples)?;
+    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let start = Scan::<R, TERMS, P>::coordinates(&(*start).into());
+    let bounds = bounds::<R, TERMS, P>(options);
+    let fit = Fit::begin(&scan, &bounds, start, &lm_options(options));
+    let state = state.write(State {
+        begun: begun::<R>(),
+        options: *options,
+        fit: MaybeUninit::uninit(),
+    });
+    // SAFETY: there is room for it, aligned as its largest sibling is.
+    unsafe { state.fit_mut::<P>().write(fit) };
+    Ok(())
+}
+
+/// The place of the state of a fit that was begun.
+///
+/// # Safety
+/// As for `memory::input`.
+unsafe fn state_of<R>(fit: *const brdfit_fit<R>) -> Result<*const State<R>, brdfit_error> {
+    // SAFETY: as asked of the caller; a number of 32 bits is there, whatever else.
+    let first = *unsafe { input(fit.cast::<u32>()) }?;
+    if first == begun::<R>() {
+        Ok(fit.cast())
+    } else {
+        Err(brdfit_error::NotBegun)
+    }
+}
+
+pub unsafe fn fit_run<R: Real>(fit: *mut brdfit_fit<R>, scan: *const brdfit_scan<R>, passes: u32) -> Done {
+    // SAFETY: the contract of the header.
+    let (state, (blocks, samples)) = unsafe { (changed(state_of(fit)?.cast_mut())?, blocks_of(scan)?) };
+    with_terms!(state.options.terms, fit_run_of::<R>(state, blocks, samples, passes))
+}
+
+#[inline(never)]
+fn fit_run_of<R: Real, const TERMS: u8, const P: usize>(
+    state: &mut State<R>,
+    blocks: &[Block<R>],
+    samples: usize,
+    passes: u32,
+) -> Done {
+    enough::<P>(samples)?;
+    let scan = Scan::<R, TERMS, P>::new(blocks);
+    // SAFETY: `fit_begin_of` wrote one of this P there, for the terms are the same.
+    let fit = unsafe { &mut *state.fit_mut::<P>() };
+    let passes = fit.passes.saturating_add(passes);
+    fit.run(
+        &scan,
+        &bounds::<R, TERMS, P>(&state.options),
+        &lm_options(&state.options),
+        passes,
+    );
+    Ok(())
+}
+
+pub unsafe fn fit_result<R: Real>(fit: *const brdfit_fit<R>, result: *mut brdfit_result<R>) -> Done {
+    // SAFETY: the contract of the header.
+    let (state, result) = unsafe { (input(state_of(fit)?)?, output(result)?) };
+    result.write(with_terms!(state.options.terms, fit_result_of::<R>(state))?);
+    Ok(())
+}
+
+fn fit_result_of<R: Real, const TERMS: u8, const P: usize>(state: &State<R>) -> Result<brdfit_result<R>, brdfit_error> {
+    // SAFETY: as in `fit_run_of`.
+    Ok(result::<R, TERMS, P>(unsafe { &*state.fit::<P>() }))
+}
+
+fn result<R: Real, const TERMS: u8, const P: usize>(fit: &Fit<R, P>) -> brdfit_result<R> {
+    brdfit_result {
+        params: Scan::<R, TERMS, P>::params(&fit.x).into(),
+        cost: fit.at.cost,
+        passes: fit.passes,
+        stop: fit.stop.into(),
+    }
+}
+
+pub unsafe fn search<R: Real>(
+    scan: *const brdfit_scan<R>,
+    options: *const brdfit_options<R>,
+    minima: *mut brdfit_minimum<R>,
+    capacity: usize,
+    found: *mut brdfit_found<R>,
+) -> Done {
+    // SAFETY: the contract of the header.
+    let ((blocks, samples), options, found) = unsafe { (blocks_of(scan)?, options_at(options)?, output(found)?) };
+    let minima = if minima.is_null() && capacity == 0 {
+        &mut []
+    } else {
+        // SAFETY: the contract of the header.
+        unsafe { outputs(minima, capacity) }?
+    };
+    found.write(with_terms!(
+        options.terms,
+        search_of::<R>(blocks, samples, &options, minima)
+    )?);
+    Ok(())
+}
+
+#[inline(never)]
+fn search_of<R: Real, const TERMS: u8, const P: usize>(
+    blocks: &[Block<R>],
+    samples: usize,
+    options: &brdfit_options<R>,
+    minima: &mut [MaybeUninit<brdfit_minimum<R>>],
+) -> Result<brdfit_found<R>, brdfit_error> {
+    enough::<P>(samples)?;
+    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let found = brdfit_core::search::search(
+        &scan,
+        &bounds::<R, TERMS, P>(options),
+        options.seed,
+        options.candidates,
+        &lm_options(options),
+    );
+    if !found.best.at.cost.is_finite() {
+        return Err(brdfit_error::NoFit);
+    }
+    for (place, minimum) in minima.iter_mut().zip(found.minima.as_slice()) {
+        place.write(brdfit_minimum {
+            params: Scan::<R, TERMS, P>::params(&minimum.x).into(),
+            cost: minimum.cost,
+            hits: minimum.hits,
+        });
+    }
+    Ok(brdfit_found {
+        best: result::<R, TERMS, P>(&found.best),
+        minima: minima.len().min(found.minima.as_slice().len()),
+        cost_passes: found.evaluations.cost,
+        linearize_passes: found.evaluations.linearize,
+    })
+}

@@ -1,0 +1,87 @@
+//! Samples -> blocks of the caller; and the model itself.
+
+use brdfit_core::brdf::{ALL, Brdf};
+use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample, SampleError};
+use brdfit_core::real::Real;
+
+use crate::Done;
+use crate::memory::{changed, input, inputs, output, outputs};
+use crate::options::check_params;
+use crate::types::*;
+
+/// The blocks that hold samples, and how many samples.
+///
+/// # Safety
+/// As for `memory::input`; the scan was begun, or holds zeros.
+pub unsafe fn blocks_of<'a, R: Real>(scan: *const brdfit_scan<R>) -> Result<(&'a [Block<R>], usize), brdfit_error> {
+    // SAFETY: as asked of the caller.
+    let scan = unsafe { input(scan) }?;
+    if scan.blocks.is_null() {
+        return Err(brdfit_error::NotBegun);
+    }
+    // SAFETY: `scan_init` was given this memory, and made blocks in it.
+    let blocks = unsafe { inputs::<Block<R>>(scan.blocks.cast(), scan.capacity) }?;
+    let filled = blocks.get(..scan.samples.div_ceil(LANES));
+    Ok((filled.ok_or(brdfit_error::NotBegun)?, scan.samples))
+}
+
+pub unsafe fn scan_init<R: Real>(scan: *mut brdfit_scan<R>, blocks: *mut brdfit_block<R>, count: usize) -> Done {
+    // SAFETY: the contract of the header; a `Block` has the size of a `brdfit_block`.
+    let (scan, memory) = unsafe { (output(scan)?, outputs::<Block<R>>(blocks.cast(), count)?) };
+    for block in memory {
+        block.write(Block::empty());
+    }
+    scan.write(brdfit_scan {
+        blocks,
+        capacity: count,
+        samples: 0,
+    });
+    Ok(())
+}
+
+pub unsafe fn scan_add<R: Real>(scan: *mut brdfit_scan<R>, samples: *const brdfit_sample<R>, count: usize) -> Done {
+    // SAFETY: the contract of the header.
+    let (scan, samples) = unsafe { (changed(scan)?, inputs(samples, count)?) };
+    if scan.blocks.is_null() {
+        return Err(brdfit_error::NotBegun);
+    }
+    for sample in samples {
+        if scan.samples / LANES >= scan.capacity {
+            return Err(brdfit_error::Full);
+        }
+        if sample.weight <= R::ZERO {
+            return Err(brdfit_error::NotPositive);
+        }
+        let observation = Observation::new(&Sample {
+            theta_i: sample.theta_i,
+            theta_s: sample.theta_s,
+            delta_phi: sample.delta_phi,
+            brdf: sample.brdf,
+            weight: sample.weight,
+        })
+        .map_err(of_sample)?;
+        // SAFETY: the block is one of the scan's, which `scan_init` made.
+        let block = unsafe { changed(scan.blocks.cast::<Block<R>>().add(scan.samples / LANES)) }?;
+        block.set(scan.samples % LANES, &observation);
+        scan.samples += 1;
+    }
+    Ok(())
+}
+
+fn of_sample(error: SampleError) -> brdfit_error {
+    match error {
+        SampleError::NotFinite => brdfit_error::NotFinite,
+        SampleError::BeyondHorizon => brdfit_error::BeyondHorizon,
+        SampleError::NotPositive => brdfit_error::NotPositive,
+    }
+}
+
+pub unsafe fn brdf<R: Real>(direction: [R; 3], params: *const brdfit_params<R>, brdf: *mut R) -> Done {
+    // SAFETY: the contract of the header.
+    let (params, brdf) = unsafe { (input(params)?, output(brdf)?) };
+    check_params(params)?;
+    let [theta_i, theta_s, delta_phi] = direction;
+    let geometry = Geometry::new(theta_i, theta_s, delta_phi).map_err(of_sample)?;
+    brdf.write(Brdf::<R, ALL>::new(&(*params).into()).ln_f(&geometry).exp());
+    Ok(())
+}

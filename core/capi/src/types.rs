@@ -1,0 +1,274 @@
+//! What C sees: plain data, and memory of a known size.
+
+use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
+use brdfit_core::geometry::{Block, LANES};
+use brdfit_core::lm::Stop;
+
+use crate::fit::State;
+
+/// Lambertian term rho_d / pi.
+pub const BRDFIT_DIFFUSE: u32 = 1;
+/// Surface lobe, around the specular direction.
+pub const BRDFIT_SURFACE: u32 = 2;
+/// Volume lobe, around the direction back to the source.
+pub const BRDFIT_VOLUME: u32 = 4;
+/// kappa is a parameter; without it kappa = 0.
+pub const BRDFIT_ABSORBING: u32 = 8;
+/// All terms: six parameters.
+pub const BRDFIT_ALL: u32 = 15;
+
+/// Samples that one block holds.
+pub const BRDFIT_BLOCK_SAMPLES: usize = 16;
+/// Size of a block, in numbers of its type.
+pub const BRDFIT_BLOCK_NUMBERS: usize = 128;
+/// Size of a block of float, bytes.
+pub const BRDFIT_BLOCK_SIZE_F32: usize = 512;
+/// Size of a block of double, bytes.
+pub const BRDFIT_BLOCK_SIZE_F64: usize = 1024;
+/// Alignment of a block, bytes.
+pub const BRDFIT_BLOCK_ALIGNMENT: usize = 64;
+/// Size of a fit, in numbers of its type.
+pub const BRDFIT_FIT_NUMBERS: usize = 96;
+/// Size of a fit in float, bytes.
+pub const BRDFIT_FIT_SIZE_F32: usize = 384;
+/// Size of a fit in double, bytes.
+pub const BRDFIT_FIT_SIZE_F64: usize = 768;
+
+const _: () = assert!(BRDFIT_DIFFUSE == DIFFUSE as u32 && BRDFIT_SURFACE == SURFACE as u32);
+const _: () = assert!(BRDFIT_VOLUME == VOLUME as u32 && BRDFIT_ABSORBING == ABSORBING as u32);
+const _: () = assert!(BRDFIT_ALL == ALL as u32);
+const _: () = assert!(BRDFIT_BLOCK_SAMPLES == LANES);
+const _: () = assert!(size_of::<brdfit_sample<f32>>() == 20 && size_of::<brdfit_sample<f64>>() == 40);
+const _: () = assert!(size_of::<brdfit_params<f32>>() == 24 && size_of::<brdfit_params<f64>>() == 48);
+const _: () = assert!(size_of::<brdfit_options<f32>>() == 80 && size_of::<brdfit_options<f64>>() == 144);
+const _: () = assert!(size_of::<brdfit_result<f32>>() == 36 && size_of::<brdfit_result<f64>>() == 64);
+const _: () = assert!(size_of::<brdfit_minimum<f32>>() == 32 && size_of::<brdfit_minimum<f64>>() == 64);
+// A block is just as large as C believes, for blocks lie side by side; a fit is at most that.
+const _: () = assert!(size_of::<brdfit_block<f32>>() == BRDFIT_BLOCK_SIZE_F32);
+const _: () = assert!(size_of::<brdfit_block<f64>>() == BRDFIT_BLOCK_SIZE_F64);
+const _: () = assert!(size_of::<brdfit_fit<f32>>() == BRDFIT_FIT_SIZE_F32);
+const _: () = assert!(size_of::<brdfit_fit<f64>>() == BRDFIT_FIT_SIZE_F64);
+const _: () = assert!(align_of::<brdfit_block<f32>>() == BRDFIT_BLOCK_ALIGNMENT);
+const _: () = assert!(size_of::<Block<f32>>() == BRDFIT_BLOCK_SIZE_F32);
+const _: () = assert!(size_of::<Block<f64>>() == BRDFIT_BLOCK_SIZE_F64);
+const _: () = assert!(align_of::<Block<f32>>() <= BRDFIT_BLOCK_ALIGNMENT);
+const _: () = assert!(align_of::<Block<f64>>() <= BRDFIT_BLOCK_ALIGNMENT);
+const _: () = assert!(size_of::<State<f32>>() <= BRDFIT_FIT_SIZE_F32);
+const _: () = assert!(size_of::<State<f64>>() <= BRDFIT_FIT_SIZE_F64);
+const _: () = assert!(align_of::<State<f64>>() <= align_of::<brdfit_fit<f64>>());
+
+/// What every function returns; brdfit_error_text() says it in words.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum brdfit_error {
+    /// No error.
+    None = 0,
+    /// A pointer is null.
+    Null = -1,
+    /// A pointer is not aligned as its type asks; blocks need BRDFIT_BLOCK_ALIGNMENT bytes.
+    Misaligned = -2,
+    /// A length is zero, or larger than memory can be.
+    Length = -3,
+    /// There is no room for a further sample.
+    Full = -4,
+    /// A number is NaN or infinite.
+    NotFinite = -5,
+    /// An angle is at or beyond the horizon, or theta_i is negative.
+    BeyondHorizon = -6,
+    /// A BRDF or a weight is zero or negative.
+    NotPositive = -7,
+    /// A parameter has a value that it can not have: see brdfit_params.
+    Params = -8,
+    /// Lower bounds are above the upper ones, or a bound has a value that its parameter can not have.
+    Bounds = -9,
+    /// There is no model of just these terms.
+    Terms = -10,
+    /// A tolerance, the damping or a number of passes or candidates is out of range.
+    Options = -11,
+    /// There are fewer samples than parameters.
+    TooFew = -12,
+    /// The scan or the fit was never begun, or has been overwritten.
+    NotBegun = -13,
+    /// No start gives a finite model.
+    NoFit = -14,
+}
+
+/// How a fit ended; brdfit_stop_text() says it in words.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum brdfit_stop {
+    /// It has not ended.
+    None = 0,
+    /// Converged: no further reduction worth the cost tolerance is to be expected.
+    Cost = 1,
+    /// Converged as far as rounding allows.
+    Step = 2,
+    /// The largest number of passes was made.
+    Passes = 3,
+    /// The model is not finite at the start: nothing was done.
+    NotFinite = 4,
+}
+
+impl From<Option<Stop>> for brdfit_stop {
+    fn from(stop: Option<Stop>) -> Self {
+        match stop {
+            None => brdfit_stop::None,
+            Some(Stop::Cost) => brdfit_stop::Cost,
+            Some(Stop::Step) => brdfit_stop::Step,
+            Some(Stop::Passes) => brdfit_stop::Passes,
+            Some(Stop::NotFinite) => brdfit_stop::NotFinite,
+        }
+    }
+}
+
+/// One measured value of the BRDF.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_sample<R> {
+    /// Angle of incidence, radians, 0 <= theta_i < pi/2.
+    pub theta_i: R,
+    /// Scattering angle, radians, -pi/2 < theta_s < pi/2; in plane positive forward, towards the specular peak.
+    pub theta_s: R,
+    /// Azimuth of scattering less azimuth of incidence, radians; BRDFIT_PI is forward.
+    pub delta_phi: R,
+    /// Measured BRDF, sr^-1, above 0.
+    pub brdf: R,
+    /// Factor of the residual of ln BRDF, dimensionless, above 0: 1, or 1 / sigma with sigma the relative standard uncertainty of brdf.
+    pub weight: R,
+}
+
+/// The six parameters of Eq. 14, dimensionless; those of absent terms are 0, but m and n are 1.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_params<R> {
+    /// Diffuse reflectance, 0 to 1e6.
+    pub rho_d: R,
+    /// Weight of the surface lobe, 0 to 1e6.
+    pub rho_s: R,
+    /// Weight of the volume lobe, 0 to 1e6.
+    pub rho_v: R,
+    /// Slope of the facets, 1e-6 to 1e6.
+    pub m: R,
+    /// Real part of the index of refraction n - i kappa, 1 to 1e6.
+    pub n: R,
+    /// Its imaginary part, 0 to 1e6.
+    pub kappa: R,
+}
+
+impl<R> From<brdfit_params<R>> for Params<R> {
+    fn from(params: brdfit_params<R>) -> Self {
+        Params {
+            rho_d: params.rho_d,
+            rho_s: params.rho_s,
+            rho_v: params.rho_v,
+            m: params.m,
+            n: params.n,
+            kappa: params.kappa,
+        }
+    }
+}
+
+impl<R> From<Params<R>> for brdfit_params<R> {
+    fn from(params: Params<R>) -> Self {
+        brdfit_params {
+            rho_d: params.rho_d,
+            rho_s: params.rho_s,
+            rho_v: params.rho_v,
+            m: params.m,
+            n: params.n,
+            kappa: params.kappa,
+        }
+    }
+}
+
+/// What to fit and how; brdfit_options_init_f32() and _f64() set all of it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_options<R> {
+    /// Seed of the candidates of a search; 0.
+    pub seed: u64,
+    /// A sum of BRDFIT_DIFFUSE and others; BRDFIT_ALL.
+    pub terms: u32,
+    /// Largest number of candidates of a search, at least 1; 384.
+    pub candidates: u32,
+    /// Largest number of passes of a fit, at least 1; 500.
+    pub max_passes: u32,
+    /// Least parameters; Table 1 of the paper. Equal to the upper ones they hold a parameter fixed.
+    pub lower: brdfit_params<R>,
+    /// Largest parameters; Table 1 of the paper.
+    pub upper: brdfit_params<R>,
+    /// A fit ends when its linear model promises a relative reduction of the cost of at most this; the distance from 1 to the next number.
+    pub cost_tolerance: R,
+    /// A fit ends when no step longer than this part of each parameter lowers the cost; the distance from 1 to the next number.
+    pub step_tolerance: R,
+    /// First damping of a fit, in units of the largest diagonal of J'J; 1e-3.
+    pub damping: R,
+}
+
+/// Memory of BRDFIT_BLOCK_SAMPLES samples.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug)]
+pub struct brdfit_block<R> {
+    /// Not to be touched.
+    pub opaque: [R; BRDFIT_BLOCK_NUMBERS],
+}
+
+/// Samples in blocks of the caller. The fields are to be read only: brdfit_scan_init_f32() and others write them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct brdfit_scan<R> {
+    /// The caller's blocks.
+    pub blocks: *mut brdfit_block<R>,
+    /// Their number.
+    pub capacity: usize,
+    /// Samples added so far.
+    pub samples: usize,
+}
+
+/// A fit under way; it holds no pointers, and may be copied.
+#[repr(C, align(8))]
+#[derive(Clone, Copy, Debug)]
+pub struct brdfit_fit<R> {
+    /// Not to be touched.
+    pub opaque: [R; BRDFIT_FIT_NUMBERS],
+}
+
+/// Where a fit is.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_result<R> {
+    /// The best parameters so far.
+    pub params: brdfit_params<R>,
+    /// Sum of squared weighted residuals of ln BRDF there, dimensionless; MSE^2 of the paper is cost / samples^2.
+    pub cost: R,
+    /// Evaluations of the model with its derivatives, each over all samples, so far.
+    pub passes: u32,
+    /// How it ended, if it has.
+    pub stop: brdfit_stop,
+}
+
+/// One of the distinct minima that a search found.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_minimum<R> {
+    /// Its parameters.
+    pub params: brdfit_params<R>,
+    /// As in brdfit_result.
+    pub cost: R,
+    /// How many fits ended here.
+    pub hits: u32,
+}
+
+/// What a search found, and what it took.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_found<R> {
+    /// The best fit.
+    pub best: brdfit_result<R>,
+    /// Number of distinct minima that were written.
+    pub minima: usize,
+    /// Evaluations of the model without derivatives.
+    pub cost_passes: u32,
+    /// Evaluations with derivatives.
+    pub linearize_passes: u32,
+}

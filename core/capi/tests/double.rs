@@ -1,0 +1,335 @@
+//! In `f64`, C gets what the Rust host gets, to the bit, and mistakes are errors; `double.rs` is this in `f64`.
+
+#![allow(clippy::unnecessary_cast, clippy::useless_conversion)]
+
+use std::mem::zeroed;
+use std::path::Path;
+use std::ptr::{null, null_mut};
+
+use brdfit::engine::{self, FitOptions, Precision, TERM_SETS};
+use brdfit_capi::brdfit_error as Error;
+use brdfit_capi::*;
+use brdfit_core::brdf::{ALL, Brdf, Params};
+use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::lm::{self, Options};
+use brdfit_core::real::Real;
+use brdfit_core::residuals::Scan;
+
+/// Test data 1 with noise, each sample with a weight.
+fn samples() -> Vec<Sample<f64>> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/testdata1_sym_seed1.csv");
+    let text = std::fs::read_to_string(file).unwrap();
+    let mut samples = Vec::new();
+    for (row, line) in text.lines().skip(1).enumerate() {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        samples.push(Sample {
+            weight: (row % 5 + 1) as f64 / 4.0,
+            ..Sample::in_plane(cells[0].to_radians(), cells[1].to_radians(), cells[2])
+        });
+    }
+    samples
+}
+
+/// The memory of a caller.
+struct Memory {
+    blocks: Vec<brdfit_block<f64>>,
+    scan: brdfit_scan<f64>,
+}
+
+fn with_samples() -> Memory {
+    let empty = brdfit_block {
+        opaque: [7.0; BRDFIT_BLOCK_NUMBERS],
+    };
+    let mut memory = Memory {
+        blocks: vec![empty; 12],
+        // SAFETY: any bits are a value of it.
+        scan: unsafe { zeroed() },
+    };
+    let samples: Vec<brdfit_sample<f64>> = samples()
+        .iter()
+        .map(|sample| brdfit_sample {
+            theta_i: sample.theta_i as f64,
+            theta_s: sample.theta_s as f64,
+            delta_phi: BRDFIT_PI as f64,
+            brdf: sample.brdf as f64,
+            weight: sample.weight as f64,
+        })
+        .collect();
+    // SAFETY: the pointers are of as many objects as is said.
+    unsafe {
+        let blocks = memory.blocks.as_mut_ptr();
+        assert_eq!(brdfit_scan_init_f64(&mut memory.scan, blocks, 12), Error::None);
+        let (one, others) = samples.split_first().unwrap();
+        assert_eq!(brdfit_scan_add_f64(&mut memory.scan, one, 1), Error::None);
+        let done = brdfit_scan_add_f64(&mut memory.scan, others.as_ptr(), others.len());
+        assert_eq!(done, Error::None);
+    }
+    assert_eq!(memory.scan.samples, samples.len());
+    memory
+}
+
+fn usual() -> brdfit_options<f64> {
+    // SAFETY: any bits are a value of it, and the pointer is of it.
+    unsafe {
+        let mut options = zeroed();
+        assert_eq!(brdfit_options_init_f64(&mut options), Error::None);
+        options
+    }
+}
+
+fn same(c: brdfit_params<f64>, rust: Params<f64>) {
+    let bits = Params::from(c).to_array().map(|value| f64::from(value).to_bits());
+    assert_eq!(bits, rust.to_array().map(f64::to_bits));
+}
+
+#[test]
+fn a_search_gives_the_bits_of_the_host() {
+    let memory = with_samples();
+    for terms in TERM_SETS {
+        let expected = FitOptions {
+            terms,
+            precision: Precision::F64,
+            ..FitOptions::default()
+        };
+        let expected = engine::fit(&samples(), &expected).unwrap();
+        let options = brdfit_options {
+            terms: terms.into(),
+            ..usual()
+        };
+        // SAFETY: any bits but those of `stop`, where 0 is right, are values; the pointers are of as many objects as is said.
+        let (found, minima) = unsafe {
+            let (mut found, mut minima) = (zeroed(), [zeroed(); 32]);
+            let done = brdfit_search_f64(&memory.scan, &options, minima.as_mut_ptr(), 32, &mut found);
+            assert_eq!(done, Error::None);
+            (found, minima)
+        };
+        same(found.best.params, expected.params);
+        assert_eq!(f64::from(found.best.cost), expected.cost);
+        assert_eq!(found.best.stop, Some(expected.stop).into());
+        let evaluations = expected.evaluations;
+        assert_eq!(
+            [found.cost_passes, found.linearize_passes],
+            [evaluations.cost, evaluations.linearize]
+        );
+        assert_eq!(found.minima, expected.minima.len());
+        for (minimum, expected) in minima.iter().zip(&expected.minima) {
+            same(minimum.params, expected.params);
+            assert_eq!(minimum.hits, expected.hits);
+        }
+    }
+}
+
+#[test]
+fn the_caller_decides_how_many_minima_are_kept() {
+    let memory = with_samples();
+    // SAFETY: as above.
+    unsafe {
+        let (mut found, mut without, mut minima) = (zeroed(), zeroed(), [zeroed(); 2]);
+        let minima_of = minima.as_mut_ptr();
+        let done = brdfit_search_f64(&memory.scan, &usual(), minima_of, 1, &mut found);
+        assert_eq!((done, found.minima), (Error::None, 1));
+        assert_eq!(minima[0].params, found.best.params);
+        assert_eq!(minima[1], zeroed());
+        // Null options are the usual ones.
+        let done = brdfit_search_f64(&memory.scan, null(), null_mut(), 0, &mut without);
+        assert_eq!((done, without.minima), (Error::None, 0));
+        assert_eq!(without.best, found.best);
+    }
+}
+
+#[test]
+fn a_fit_in_pieces_gives_the_bits_of_one_at_once() {
+    let memory = with_samples();
+    let start = brdfit_params::from(Params::from_array([0.1, 1.0, 0.01, 0.2, 1.5, 0.5]));
+    let options = usual();
+    let blocks = engine::blocks::<f64>(&samples()).unwrap();
+    let scan = Scan::<f64, ALL, 6>::new(&blocks);
+    let bounds = Scan::<f64, ALL, 6>::bounds(&options.lower.into(), &options.upper.into());
+    let x = Scan::<f64, ALL, 6>::coordinates(&start.into());
+    let expected = lm::fit(&scan, &bounds, x, &Options::default());
+    for passes in [1, 7, u32::MAX] {
+        // SAFETY: as above.
+        let result = unsafe {
+            let (mut fit, mut result): (_, brdfit_result<f64>) = (zeroed(), zeroed());
+            assert_eq!(
+                brdfit_fit_begin_f64(&mut fit, &memory.scan, &start, null()),
+                Error::None
+            );
+            while {
+                assert_eq!(brdfit_fit_result_f64(&fit, &mut result), Error::None);
+                result.stop == brdfit_stop::None
+            } {
+                // A copy goes on as the original would.
+                let mut copy = fit;
+                let before = result.passes;
+                assert_eq!(brdfit_fit_run_f64(&mut copy, &memory.scan, passes), Error::None);
+                assert_eq!(brdfit_fit_result_f64(&copy, &mut result), Error::None);
+                assert!(result.passes <= before.saturating_add(passes));
+                fit = copy;
+            }
+            result
+        };
+        assert_eq!(Params::from(result.params), Scan::<f64, ALL, 6>::params(&expected.x));
+        assert_eq!((result.cost, result.passes), (expected.at.cost, expected.passes));
+        assert_eq!(result.stop, expected.stop.into());
+    }
+}
+
+#[test]
+fn the_model_gives_the_bits_of_the_host() {
+    let params = Params::from_array([0.1, 10.0, 0.01, 0.1, 3.0, 1.0]);
+    let model = Brdf::<f64, ALL>::new(&params);
+    for step in -15..=15 {
+        let direction = [0.75, step as f64 * 0.1, step as f64 * 0.3];
+        let expected = model.ln_f(&Geometry::new(direction[0], direction[1], direction[2]).unwrap());
+        let mut value = 0.0;
+        // SAFETY: as above.
+        let done = unsafe { brdfit_brdf_f64(direction[0], direction[1], direction[2], &params.into(), &mut value) };
+        assert_eq!((done, value), (Error::None, Real::exp(expected)));
+    }
+}
+
+#[test]
+fn mistakes_with_samples_are_errors() {
+    let good = brdfit_sample::<f64> {
+        theta_i: 0.5,
+        theta_s: 0.4,
+        delta_phi: BRDFIT_PI as f64,
+        brdf: 1.0,
+        weight: 1.0,
+    };
+    let nan = f64::NAN;
+    let infinite = f64::INFINITY;
+    let bad = [
+        (brdfit_sample { theta_i: nan, ..good }, Error::NotFinite),
+        (brdfit_sample { theta_s: nan, ..good }, Error::NotFinite),
+        (
+            brdfit_sample {
+                delta_phi: infinite,
+                ..good
+            },
+            Error::NotFinite,
+        ),
+        (brdfit_sample { brdf: nan, ..good }, Error::NotFinite),
+        (brdfit_sample { weight: nan, ..good }, Error::NotFinite),
+        (brdfit_sample { theta_i: -0.1, ..good }, Error::BeyondHorizon),
+        (brdfit_sample { theta_s: 1.6, ..good }, Error::BeyondHorizon),
+        (brdfit_sample { brdf: 0.0, ..good }, Error::NotPositive),
+        (brdfit_sample { brdf: -1.0, ..good }, Error::NotPositive),
+        (brdfit_sample { weight: 0.0, ..good }, Error::NotPositive),
+        (brdfit_sample { weight: -1.0, ..good }, Error::NotPositive),
+    ];
+    // SAFETY: as above; what is not so is null, misaligned, or said to be of impossible length.
+    unsafe {
+        let (mut scan, mut not_begun): (brdfit_scan<f64>, brdfit_scan<f64>) = (zeroed(), zeroed());
+        let mut blocks: [brdfit_block<f64>; 2] = zeroed();
+        let memory = blocks.as_mut_ptr();
+        assert_eq!(brdfit_scan_init_f64(null_mut(), memory, 1), Error::Null);
+        assert_eq!(brdfit_scan_init_f64(&mut scan, null_mut(), 1), Error::Null);
+        assert_eq!(brdfit_scan_init_f64(&mut scan, memory, 0), Error::Length);
+        assert_eq!(brdfit_scan_init_f64(&mut scan, memory, usize::MAX), Error::Length);
+        let shifted = memory.byte_add(16);
+        assert_eq!(brdfit_scan_init_f64(&mut scan, shifted, 1), Error::Misaligned);
+        assert_eq!(scan.capacity, 0);
+        assert_eq!(brdfit_scan_init_f64(&mut scan, memory, 1), Error::None);
+
+        assert_eq!(brdfit_scan_add_f64(null_mut(), &good, 1), Error::Null);
+        assert_eq!(brdfit_scan_add_f64(&mut not_begun, &good, 1), Error::NotBegun);
+        assert_eq!(brdfit_scan_add_f64(&mut scan, null(), 1), Error::Null);
+        assert_eq!(brdfit_scan_add_f64(&mut scan, &good, 0), Error::Length);
+        assert_eq!(brdfit_scan_add_f64(&mut scan, &good, usize::MAX), Error::Length);
+        for (sample, error) in bad {
+            let two = [good, sample];
+            let before = scan.samples;
+            assert_eq!(brdfit_scan_add_f64(&mut scan, two.as_ptr(), 2), error, "{sample:?}");
+            assert_eq!(scan.samples, before + 1);
+        }
+        let many = [good; 16];
+        assert_eq!(brdfit_scan_add_f64(&mut scan, many.as_ptr(), 16), Error::Full);
+        assert_eq!(scan.samples, 16);
+    }
+}
+
+#[test]
+fn mistakes_with_fits_are_errors() {
+    let memory = with_samples();
+    let scan = &memory.scan;
+    let start = brdfit_params::<f64>::from(Params::from_array([0.1, 1.0, 0.01, 0.2, 1.5, 0.5]));
+    // SAFETY: as above.
+    unsafe {
+        let (mut fit, mut result): (brdfit_fit<f64>, brdfit_result<f64>) = (zeroed(), zeroed());
+        let none = zeroed();
+        let few = brdfit_scan { samples: 5, ..*scan };
+        let wrong = brdfit_scan { samples: 500, ..*scan };
+        assert_eq!(brdfit_fit_begin_f64(null_mut(), scan, &start, null()), Error::Null);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, null(), &start, null()), Error::Null);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, scan, null(), null()), Error::Null);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, &none, &start, null()), Error::NotBegun);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, &wrong, &start, null()), Error::NotBegun);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, &few, &start, null()), Error::TooFew);
+        let bad = brdfit_params { m: f64::NAN, ..start };
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, scan, &bad, null()), Error::NotFinite);
+        // None of these began it.
+        assert_eq!(brdfit_fit_run_f64(&mut fit, scan, 1), Error::NotBegun);
+        assert_eq!(brdfit_fit_result_f64(&fit, &mut result), Error::NotBegun);
+        assert_eq!(brdfit_fit_begin_f64(&mut fit, scan, &start, null()), Error::None);
+        assert_eq!(brdfit_fit_run_f64(null_mut(), scan, 1), Error::Null);
+        assert_eq!(brdfit_fit_run_f64(&mut fit, null(), 1), Error::Null);
+        assert_eq!(brdfit_fit_run_f64(&mut fit, &few, 1), Error::TooFew);
+        assert_eq!(brdfit_fit_result_f64(null(), &mut result), Error::Null);
+        assert_eq!(brdfit_fit_result_f64(&fit, null_mut()), Error::Null);
+
+        let (mut found, mut x, mut value): (brdfit_found<f64>, _, _) = (zeroed(), start, 0.0);
+        assert_eq!(
+            brdfit_search_f64(null(), null(), null_mut(), 0, &mut found),
+            Error::Null
+        );
+        assert_eq!(brdfit_search_f64(scan, null(), null_mut(), 1, &mut found), Error::Null);
+        assert_eq!(brdfit_search_f64(scan, null(), null_mut(), 0, null_mut()), Error::Null);
+        assert_eq!(
+            brdfit_search_f64(&few, null(), null_mut(), 0, &mut found),
+            Error::TooFew
+        );
+        assert_eq!(brdfit_candidate_f64(null(), null(), 0, &mut x), Error::Null);
+        assert_eq!(brdfit_candidate_f64(scan, null(), 0, null_mut()), Error::Null);
+        assert_eq!(brdfit_candidate_f64(&few, null(), 0, &mut x), Error::TooFew);
+
+        assert_eq!(brdfit_brdf_f64(0.1, 0.1, 0.0, null(), &mut value), Error::Null);
+        assert_eq!(brdfit_brdf_f64(0.1, 0.1, 0.0, &start, null_mut()), Error::Null);
+        assert_eq!(
+            brdfit_brdf_f64(f64::NAN, 0.1, 0.0, &start, &mut value),
+            Error::NotFinite
+        );
+        assert_eq!(brdfit_brdf_f64(1.6, 0.1, 0.0, &start, &mut value), Error::BeyondHorizon);
+        assert_eq!(brdfit_brdf_f64(0.1, 0.1, 0.0, &bad, &mut value), Error::NotFinite);
+        let bad = brdfit_params { n: 0.5, ..start };
+        assert_eq!(brdfit_brdf_f64(0.1, 0.1, 0.0, &bad, &mut value), Error::Params);
+        assert_eq!(brdfit_options_init_f64(null_mut()), Error::Null);
+    }
+}
+
+#[test]
+fn mistakes_with_options_are_errors() {
+    let memory = with_samples();
+    let wrong = |change: &dyn Fn(&mut brdfit_options<f64>)| {
+        let mut options = usual();
+        change(&mut options);
+        // SAFETY: as above.
+        unsafe {
+            let mut found = zeroed();
+            brdfit_search_f64(&memory.scan, &options, null_mut(), 0, &mut found)
+        }
+    };
+    assert_eq!(wrong(&|options| options.lower.m = f64::NAN), Error::Bounds);
+    assert_eq!(wrong(&|options| options.lower.rho_d = 2.0), Error::Bounds);
+    assert_eq!(wrong(&|options| options.lower.n = 0.5), Error::Bounds);
+    assert_eq!(wrong(&|options| options.upper.kappa = f64::INFINITY), Error::Bounds);
+    assert_eq!(wrong(&|options| options.terms = BRDFIT_VOLUME), Error::Terms);
+    assert_eq!(wrong(&|options| options.terms = 0), Error::Terms);
+    assert_eq!(wrong(&|options| options.terms = 16), Error::Terms);
+    assert_eq!(wrong(&|options| options.candidates = 0), Error::Options);
+    assert_eq!(wrong(&|options| options.max_passes = 0), Error::Options);
+    assert_eq!(wrong(&|options| options.cost_tolerance = f64::NAN), Error::Options);
+    assert_eq!(wrong(&|options| options.step_tolerance = -1.0), Error::Options);
+    assert_eq!(wrong(&|options| options.damping = 0.0), Error::Options);
+}

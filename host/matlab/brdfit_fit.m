@@ -1,0 +1,135 @@
+function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s, brdf, options)
+% BRDFIT_FIT  Parameters of a microfacet BRDF model from a scan: the global optimum, without a start.
+%
+%   x = brdfit_fit(theta_i, theta_s, brdf)
+%   x = brdfit_fit(theta_i, theta_s, brdf, options)
+%   [x, resnorm, residual, exitflag, output] = brdfit_fit(...)
+%
+%   All angles are in DEGREES.
+%   theta_i   angles of incidence, 0 <= theta_i < 90; an array like brdf, or one number
+%   theta_s   scattering angles, -90 < theta_s < 90; in plane positive forward, towards the specular peak
+%   brdf      measured BRDF in sr^-1, above 0
+%
+%   x         [rho_d rho_s rho_v m n kappa], dimensionless (Eq. 14 of Bishop, Butler and Marciniak, 2021);
+%             of absent terms rho and kappa are 0, m and n are 1
+%   resnorm   sum(residual(:).^2)
+%   residual  ln of the model less ln brdf, times brdf / sigma if there is a sigma; of the size of brdf
+%   exitflag  1: converged, 2: converged as far as rounding allows, 0: too many evaluations, as in lsqcurvefit
+%   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17),
+%             .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits)
+%
+%   options is a struct with any of these fields; empty ones count as not given:
+%   delta_phi    azimuth of scattering less that of incidence in degrees; 180, in plane
+%   sigma        standard deviations of brdf in sr^-1; none, so that all samples have the same relative weight
+%   terms        'all', or some of 'diffuse', 'surface', 'volume', 'absorbing' with commas between; 'all'
+%   lb, ub       bounds of x, as in lsqcurvefit; Table 1 of the paper: [0 0 0 1e-5 1 0], [1 100 100 10 100 100];
+%                equal ones hold a parameter fixed
+%   seed         of the search, an integer from 0 to 2^53; 0
+%   candidates   largest number of candidates of the search; 384
+%   MaxFunEvals  largest number of evaluations of one fit; 500
+%   TolFun, TolX relative tolerances in resnorm and in x; eps
+%
+%   The same input gives the same bits of x and resnorm on every machine, and those of the program brdfit.
+%
+%   Errors: brdfit:badInput, brdfit:sizeMismatch, brdfit:badOption, brdfit:badTerms, brdfit:badBounds,
+%   brdfit:notFinite, brdfit:beyondHorizon, brdfit:notPositive, brdfit:tooFewSamples, brdfit:noFit.
+%
+%   See also brdfit_brdf, lsqcurvefit.
+
+    if nargin < 3 || nargin > 4
+        error('brdfit:badInput', 'brdfit_fit: takes theta_i, theta_s, brdf and, if need be, options');
+    end
+    if nargin < 4 || isempty(options)
+        options = struct();
+    end
+    if ~isstruct(options) || numel(options) ~= 1
+        error('brdfit:badOption', 'brdfit_fit: options must be one struct');
+    end
+    settings = struct('delta_phi', 180, 'sigma', [], 'terms', 'all', 'lb', [0 0 0 1e-5 1 0], ...
+        'ub', [1 100 100 10 100 100], 'seed', 0, 'candidates', NaN, 'MaxFunEvals', NaN, 'TolFun', NaN, 'TolX', NaN);
+    names = fieldnames(options);
+    for k = 1:numel(names)
+        if isempty(options.(names{k}))
+            continue
+        end
+        if ~isfield(settings, names{k})
+            error('brdfit:badOption', 'brdfit_fit: there is no option %s; see help brdfit_fit', names{k});
+        end
+        settings.(names{k}) = options.(names{k});
+    end
+
+    if ~isnumeric(brdf) || ~isreal(brdf) || isempty(brdf)
+        error('brdfit:badInput', 'brdfit_fit: brdf must be an array of real numbers');
+    end
+    radian = pi / 180;
+    f = double(brdf(:).');
+    ti = brdfit_row('theta_i', theta_i, numel(f)) * radian;
+    ts = brdfit_row('theta_s', theta_s, numel(f)) * radian;
+    dphi = brdfit_row('options.delta_phi', settings.delta_phi, numel(f)) * radian;
+    weight = ones(size(f));
+    if ~isempty(settings.sigma)
+        weight = f ./ brdfit_row('options.sigma', settings.sigma, numel(f));
+    end
+    numbers = [whole('seed', settings.seed, 0, 2^53), terms_number(settings.terms), ...
+        whole('candidates', settings.candidates, 1, 2^32 - 1), whole('MaxFunEvals', settings.MaxFunEvals, 1, 2^32 - 1), ...
+        number('TolFun', settings.TolFun), number('TolX', settings.TolX)];
+
+    [x, resnorm, stop, passes, minima] = brdfit_mex('fit', [ti; ts; dphi; f; weight], numbers, ...
+        bound('lb', settings.lb), bound('ub', settings.ub));
+
+    if nargout > 2
+        residual = reshape((log(brdfit_mex('brdf', [ti; ts; dphi], x)) - log(f)) .* weight, size(brdf));
+    end
+    flags = [1 2 0];
+    messages = {'converged in resnorm', 'converged as far as rounding allows', 'MaxFunEvals evaluations were made'};
+    exitflag = flags(stop);
+    if nargout > 4
+        output = struct('iterations', passes(1), 'funcCount', passes(2) + passes(3), ...
+            'algorithm', 'global search with bounded Levenberg-Marquardt', 'message', messages{stop}, ...
+            'mse2', resnorm / numel(f)^2);
+        output.minima = struct('x', {}, 'resnorm', {}, 'mse2', {}, 'hits', {});
+        for k = 1:size(minima, 2)
+            output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k), ...
+                'mse2', minima(7, k) / numel(f)^2, 'hits', minima(8, k));
+        end
+    end
+end
+
+function value = number(name, value)
+    if ~isnumeric(value) || ~isreal(value) || numel(value) ~= 1
+        error('brdfit:badOption', 'brdfit_fit: options.%s must be a number', name);
+    end
+    value = double(value);
+end
+
+function value = whole(name, value, least, largest)
+    value = number(name, value);
+    if ~isnan(value) && ~(value >= least && value <= largest && value == floor(value))
+        error('brdfit:badOption', 'brdfit_fit: options.%s must be an integer from %g to %g', name, least, largest);
+    end
+end
+
+function value = bound(name, value)
+    if ~isnumeric(value) || ~isreal(value) || numel(value) ~= 6
+        error('brdfit:badBounds', 'brdfit_fit: options.%s must have 6 numbers', name);
+    end
+    value = reshape(double(value), 1, 6);
+end
+
+function sum = terms_number(terms)
+    names = {'diffuse', 'surface', 'volume', 'absorbing'};
+    if ischar(terms)
+        terms = strtrim(strsplit(terms, ','));
+    end
+    if ~iscellstr(terms)
+        error('brdfit:badTerms', 'brdfit_fit: options.terms must be text');
+    end
+    if isequal(terms(:), {'all'})
+        terms = names;
+    end
+    known = ismember(terms, names);
+    if ~all(known)
+        error('brdfit:badTerms', 'brdfit_fit: there is no term %s; they are %s', terms{find(~known, 1)}, strjoin(names, ', '));
+    end
+    sum = ismember(names, terms) * [1; 2; 4; 8];
+end

@@ -1,0 +1,155 @@
+/*
+ * The MEX behind brdfit_fit.m and brdfit_brdf.m, which check the form of what they give to it:
+ *
+ *   [x, resnorm, stop, passes, minima] = brdfit_mex ("fit", samples, settings, lb, ub)
+ *   f = brdfit_mex ("brdf", directions, x)
+ *
+ * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, weight. settings is [seed, terms,
+ * candidates, max_passes, cost_tolerance, step_tolerance], where NaN stands for the usual value. passes is [of the
+ * best fit, without derivatives, with derivatives], and minima 8 x k: parameters, cost, hits. directions is 3 x n.
+ */
+#include <stdint.h>
+#include <string.h>
+
+#include "brdfit.h"
+#include "mex.h"
+
+#define MINIMA 32
+
+/* What the program calls brdfit:... */
+static const char *identifier(brdfit_error error) {
+    switch (error) {
+    case BRDFIT_ERROR_NOT_FINITE:
+        return "brdfit:notFinite";
+    case BRDFIT_ERROR_BEYOND_HORIZON:
+        return "brdfit:beyondHorizon";
+    case BRDFIT_ERROR_NOT_POSITIVE:
+        return "brdfit:notPositive";
+    case BRDFIT_ERROR_PARAMS:
+        return "brdfit:badParameters";
+    case BRDFIT_ERROR_BOUNDS:
+        return "brdfit:badBounds";
+    case BRDFIT_ERROR_TERMS:
+        return "brdfit:badTerms";
+    case BRDFIT_ERROR_OPTIONS:
+        return "brdfit:badOption";
+    case BRDFIT_ERROR_TOO_FEW:
+        return "brdfit:tooFewSamples";
+    case BRDFIT_ERROR_NO_FIT:
+        return "brdfit:noFit";
+    default:
+        return "brdfit:internal";
+    }
+}
+
+static void check(brdfit_error error) {
+    if (error)
+        mexErrMsgIdAndTxt(identifier(error), "brdfit: %s", brdfit_error_text(error));
+}
+
+static void check_sample(brdfit_error error, size_t index) {
+    if (error)
+        mexErrMsgIdAndTxt(identifier(error), "brdfit: sample %lu: %s", (unsigned long)index + 1,
+                          brdfit_error_text(error));
+}
+
+/* A matrix of doubles with so many rows, or with any number of columns if columns is 0. */
+static const double *matrix(const mxArray *array, size_t rows, size_t columns) {
+    if (!mxIsDouble(array) || mxIsComplex(array) || mxGetM(array) != rows || (columns && mxGetN(array) != columns))
+        mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex: an argument has the wrong type or size");
+    return mxGetPr(array);
+}
+
+static brdfit_params_f64 params(const double *x) {
+    brdfit_params_f64 params = {x[0], x[1], x[2], x[3], x[4], x[5]};
+    return params;
+}
+
+static void put_params(double *x, const brdfit_params_f64 *params) {
+    const double values[6] = {params->rho_d, params->rho_s, params->rho_v, params->m, params->n, params->kappa};
+    memcpy(x, values, sizeof values);
+}
+
+static mxArray *scalar(double value) { return mxCreateDoubleScalar(value); }
+
+static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
+    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 6);
+    const size_t count = mxGetN(input[1]), blocks = BRDFIT_BLOCKS(count);
+    brdfit_scan_f64 scan;
+    brdfit_options_f64 options;
+    brdfit_found_f64 found;
+    brdfit_minimum_f64 minima[MINIMA];
+    /* MATLAB frees it, also after an error; its alignment is less than that of a block. */
+    char *memory = mxMalloc(blocks * sizeof(brdfit_block_f64) + BRDFIT_BLOCK_ALIGNMENT);
+    memory += (BRDFIT_BLOCK_ALIGNMENT - (uintptr_t)memory % BRDFIT_BLOCK_ALIGNMENT) % BRDFIT_BLOCK_ALIGNMENT;
+
+    check(brdfit_scan_init_f64(&scan, (brdfit_block_f64 *)memory, blocks));
+    for (size_t i = 0; i < count; i++) {
+        const double *row = samples + 5 * i;
+        const brdfit_sample_f64 sample = {row[0], row[1], row[2], row[3], row[4]};
+        check_sample(brdfit_scan_add_f64(&scan, &sample, 1), i);
+    }
+    check(brdfit_options_init_f64(&options));
+    options.seed = (uint64_t)settings[0];
+    options.terms = (uint32_t)settings[1];
+    if (!mxIsNaN(settings[2]))
+        options.candidates = (uint32_t)settings[2];
+    if (!mxIsNaN(settings[3]))
+        options.max_passes = (uint32_t)settings[3];
+    if (!mxIsNaN(settings[4]))
+        options.cost_tolerance = settings[4];
+    if (!mxIsNaN(settings[5]))
+        options.step_tolerance = settings[5];
+    options.lower = params(matrix(input[3], 1, 6));
+    options.upper = params(matrix(input[4], 1, 6));
+    check(brdfit_search_f64(&scan, &options, minima, MINIMA, &found));
+
+    output[0] = mxCreateDoubleMatrix(1, 6, mxREAL);
+    put_params(mxGetPr(output[0]), &found.best.params);
+    if (outputs > 1)
+        output[1] = scalar(found.best.cost);
+    if (outputs > 2)
+        output[2] = scalar(found.best.stop);
+    if (outputs > 3) {
+        output[3] = mxCreateDoubleMatrix(1, 3, mxREAL);
+        mxGetPr(output[3])[0] = found.best.passes;
+        mxGetPr(output[3])[1] = found.cost_passes;
+        mxGetPr(output[3])[2] = found.linearize_passes;
+    }
+    if (outputs > 4) {
+        output[4] = mxCreateDoubleMatrix(8, found.minima, mxREAL);
+        for (size_t i = 0; i < found.minima; i++) {
+            double *column = mxGetPr(output[4]) + 8 * i;
+            put_params(column, &minima[i].params);
+            column[6] = minima[i].cost;
+            column[7] = minima[i].hits;
+        }
+    }
+}
+
+static void brdf(mxArray *output[], const mxArray *input[]) {
+    const double *directions = matrix(input[1], 3, 0);
+    const brdfit_params_f64 x = params(matrix(input[2], 1, 6));
+    const size_t count = mxGetN(input[1]);
+    output[0] = mxCreateDoubleMatrix(1, count, mxREAL);
+    for (size_t i = 0; i < count; i++) {
+        const double *direction = directions + 3 * i;
+        const brdfit_error error =
+            brdfit_brdf_f64(direction[0], direction[1], direction[2], &x, mxGetPr(output[0]) + i);
+        if (error == BRDFIT_ERROR_PARAMS)
+            check(error);
+        check_sample(error, i);
+    }
+}
+
+void mexFunction(int outputs, mxArray *output[], int inputs, const mxArray *input[]) {
+    char name[8] = "";
+    if (inputs > 0 && mxIsChar(input[0]))
+        mxGetString(input[0], name, sizeof name);
+    if (!strcmp(name, "fit") && inputs == 5)
+        fit(outputs, output, input);
+    else if (!strcmp(name, "brdf") && inputs == 3)
+        brdf(output, input);
+    else
+        mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex is for brdfit_fit and brdfit_brdf");
+}

@@ -1,0 +1,115 @@
+function test_brdfit(expected)
+% TEST_BRDFIT  Tests of brdfit_fit and brdfit_brdf.
+%
+%   test_brdfit
+%   test_brdfit('fits.csv')   also compares bits with what the program printed:
+%                             brdfit fit tests/data/testdata1_sym_seed1.csv tests/data/testdata2_sym_seed1.csv ... --format csv
+
+    data = fullfile(fileparts(mfilename('fullpath')), '..', '..', 'tests', 'data');
+    names = {'testdata1_sym_seed1.csv', 'testdata2_sym_seed1.csv', 'testdata3_sym_seed1.csv'};
+    for k = 1:numel(names)
+        table = dlmread(fullfile(data, names{k}), ',', 1, 0);
+        [ti, ts, f] = deal(table(:, 1), table(:, 2), table(:, 3));
+        [x, resnorm, residual, exitflag, output] = brdfit_fit(ti, ts, f);
+        assert(exitflag == 1 || exitflag == 2);
+        % What comes out belongs together.
+        assert(isequal(size(residual), size(f)) && isequal(size(x), [1 6]));
+        close_to(sum(residual.^2), resnorm, 1e-12);
+        close_to(output.mse2, resnorm / numel(f)^2, 1e-15);
+        close_to(exp(residual), brdfit_brdf(ti, ts, x) ./ f, 1e-14);
+        close_to(brdfit_brdf(ti, ts, x), eq14(x, ti, ts), 1e-11);
+        assert(isequal(output.minima(1).x, x) && output.minima(1).resnorm == resnorm && output.minima(1).hits >= 1);
+        assert(output.funcCount > output.iterations && output.iterations > 0);
+        % It is a minimum within the bounds: no small step in any parameter lowers resnorm.
+        [lower, upper] = deal([0 0 0 1e-5 1 0], [1 100 100 10 100 100]);
+        for p = 1:6
+            for step = [-1e-3, 1e-3]
+                y = x;
+                y(p) = min(max(x(p) + step * max(x(p), 1e-3), lower(p)), upper(p));
+                assert(sum((log(eq14(y, ti, ts)) - log(f)).^2) >= resnorm * (1 - 1e-12));
+            end
+        end
+        % Rows, one number for theta_i, and sigma in proportion to brdf change nothing.
+        assert(isequal(brdfit_fit(ti(1), ts.', f.'), x));
+        assert(isequal(brdfit_fit(ti, ts, f, struct('sigma', f, 'delta_phi', 180, 'seed', [])), x));
+        if nargin > 0
+            same_bits(expected, k, x, output.mse2);
+        end
+    end
+
+    % Options.
+    [y, resnorm_y] = brdfit_fit(ti, ts, f, struct('terms', 'diffuse, surface'));
+    assert(y(3) == 0 && y(6) == 0 && resnorm_y >= resnorm);
+    assert(isequal(brdfit_fit(ti, ts, f, struct('terms', {{'surface', 'diffuse'}})), y));
+    y = brdfit_fit(ti, ts, f, struct('lb', [0 0 0 1e-5 1.5 0], 'ub', [1 100 100 10 1.5 0]));
+    assert(y(5) == 1.5 && y(6) == 0);
+    [~, resnorm_y, ~, flag] = brdfit_fit(ti, ts, f, struct('MaxFunEvals', 1, 'candidates', 1));
+    assert(flag == 0 && resnorm_y > resnorm);
+    % Twice the sigma is a quarter of resnorm; a sample with a large one hardly counts.
+    [~, half] = brdfit_fit(ti, ts, f, struct('sigma', 2 * f));
+    close_to(half, resnorm / 4, 1e-12);
+    spoilt = f;
+    spoilt(7) = 100 * f(7);
+    sigma = f;
+    sigma(7) = 1e9 * f(7);
+    close_to(brdfit_fit(ti, ts, spoilt, struct('sigma', sigma))(1), x(1), 1e-3);
+    % Out of plane.
+    [a, b] = deal(brdfit_brdf(30, 40, x, 180), brdfit_brdf(30, -40, x, 0));
+    close_to(a, b, 1e-12);
+
+    % Mistakes.
+    fails('brdfit:badInput', @() brdfit_fit(ti, ts));
+    fails('brdfit:badInput', @() brdfit_fit(ti, ts, []));
+    fails('brdfit:badInput', @() brdfit_fit('a', ts, f));
+    fails('brdfit:badInput', @() brdfit_fit(ti, ts, f + 1i));
+    fails('brdfit:sizeMismatch', @() brdfit_fit(ti, ts(1:end - 1), f));
+    fails('brdfit:badOption', @() brdfit_fit(ti, ts, f, 7));
+    fails('brdfit:badOption', @() brdfit_fit(ti, ts, f, struct('colour', 'red')));
+    fails('brdfit:badOption', @() brdfit_fit(ti, ts, f, struct('seed', -1)));
+    fails('brdfit:badOption', @() brdfit_fit(ti, ts, f, struct('TolX', -1)));
+    fails('brdfit:badTerms', @() brdfit_fit(ti, ts, f, struct('terms', 'shiny')));
+    fails('brdfit:badTerms', @() brdfit_fit(ti, ts, f, struct('terms', 'volume')));
+    fails('brdfit:badBounds', @() brdfit_fit(ti, ts, f, struct('lb', [0 0])));
+    fails('brdfit:badBounds', @() brdfit_fit(ti, ts, f, struct('lb', [2 0 0 1e-5 1 0])));
+    fails('brdfit:notFinite', @() brdfit_fit(ti, ts, [NaN; f(2:end)]), 'sample 1:');
+    fails('brdfit:notPositive', @() brdfit_fit(ti, ts, [f(1:end - 1); 0]), sprintf('sample %d:', numel(f)));
+    fails('brdfit:notPositive', @() brdfit_fit(ti, ts, f, struct('sigma', -f)));
+    fails('brdfit:beyondHorizon', @() brdfit_fit(95, ts, f));
+    fails('brdfit:tooFewSamples', @() brdfit_fit(ti(1:5), ts(1:5), f(1:5)));
+    fails('brdfit:badParameters', @() brdfit_brdf(45, 45, [0 0 0 1 0 0]));
+    fails('brdfit:badParameters', @() brdfit_brdf(45, 45, [0 0 0]));
+    disp('test_brdfit: all passed');
+end
+
+function close_to(a, b, tolerance)
+    distance = max(abs(a(:) - b(:)) ./ abs(b(:)));
+    assert(distance <= tolerance, 'differs by %g, allowed is %g', distance, tolerance);
+end
+
+function fails(identifier, call, part)
+    if nargin < 3
+        part = 'brdfit';
+    end
+    caught = '';
+    message = '';
+    try
+        call();
+    catch problem
+        caught = problem.identifier;
+        message = problem.message;
+    end
+    assert(strcmp(caught, identifier), 'expected %s, got "%s" (%s)', identifier, caught, message);
+    assert(~isempty(strfind(message, part)), 'expected "%s" in "%s"', part, message);
+end
+
+function same_bits(file, row, x, mse2)
+    lines = strsplit(strtrim(fileread(file)), sprintf('\n'));
+    columns = strsplit(lines{1}, ',', 'CollapseDelimiters', false);
+    cells = strsplit(lines{row + 1}, ',', 'CollapseDelimiters', false);
+    value = @(name) str2double(cells{strcmp(columns, name)});
+    names = {'rho_d', 'rho_s', 'rho_v', 'm', 'n', 'kappa'};
+    for p = 1:6
+        assert(isequal(x(p), value(names{p})), '%s differs from the program''s', names{p});
+    end
+    assert(isequal(mse2, value('mse2')), 'mse2 differs from the program''s');
+end

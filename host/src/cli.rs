@@ -7,7 +7,7 @@ use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, fit, paper, shell, simulate, stability};
+use crate::{converge, export, fit, paper, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -39,6 +39,7 @@ enum Command {
     Paper(paper::Arguments),
     Converge(converge::Arguments),
     Stability(stability::Arguments),
+    Export(export::Arguments),
     Completions(shell::Completions),
     Man(shell::Manual),
 }
@@ -138,6 +139,7 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<Ended, Error> {
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
+        Command::Export(arguments) => export::run(arguments, streams),
         Command::Completions(arguments) => shell::completions(arguments, streams),
         Command::Man(arguments) => shell::manual(arguments, streams),
     }?;

@@ -7,7 +7,7 @@ pub mod trace;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
@@ -62,7 +62,8 @@ enum Format {
 /// # Errors
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let truth = arguments.truth.as_deref().map(truth).transpose()?;
+    let truth = arguments.truth.as_deref();
+    let truth = truth.map(|list| options::all_parameters(list, "--truth")).transpose()?;
     let measurement = match &arguments.scan {
         Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
         None => None,
@@ -121,33 +122,6 @@ pub fn paper_scans() -> Vec<Subject> {
         truth: Some(Params::from_array(set.actual)),
     };
     embedded::SETS.iter().map(subject).collect()
-}
-
-/// Reads `rho_d=0.1,rho_s=10,...`, each parameter once.
-fn truth(list: &str) -> Result<Params<f64>, Error> {
-    let mut values = [None; NAMES.len()];
-    for member in list.split(',') {
-        let one = options::fixed(member).map_err(|error| match error.help {
-            Some(help) => Error::new(error.what).help(help.replace("--fix ", "--truth ")),
-            None => error,
-        })?;
-        if values[one.index].replace(one.lower).is_some() {
-            return Err(Error::new(format!("--truth gives {} twice", NAMES[one.index])).help("give it once"));
-        }
-    }
-    let missing: Vec<&str> = (0..NAMES.len())
-        .filter(|&k| values[k].is_none())
-        .map(|k| NAMES[k])
-        .collect();
-    if !missing.is_empty() {
-        return Err(
-            Error::new(format!("--truth lacks {}", missing.join(", "))).help(format!(
-                "give all of {}; a lobe that is not there has rho 0",
-                NAMES.join(", ")
-            )),
-        );
-    }
-    Ok(Params::from_array(values.map(Option::unwrap_or_default)))
 }
 
 fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {

@@ -28,9 +28,6 @@ pub struct SearchArguments {
     /// Holds a parameter fixed; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     fix: Vec<String>,
-    /// Leaves out samples far from the fit (6 robust standard deviations of ln f), and says how many
-    #[arg(long)]
-    robust: bool,
     /// Number type of the computation
     #[arg(long, value_enum, default_value = "f64")]
     precision: PrecisionName,
@@ -68,7 +65,6 @@ impl SearchArguments {
             },
             seed: self.seed,
             starts: self.starts,
-            robust: self.robust,
             terms: terms(&self.terms)?,
             ..FitOptions::default()
         };
@@ -201,6 +197,36 @@ pub fn fixed(text: &str) -> Result<Range, Error> {
         lower: value,
         upper: value,
     })
+}
+
+/// Reads `rho_d=0.1,rho_s=10,...`, each parameter once; `option` is what messages call it.
+///
+/// # Errors
+/// A parameter is unknown, missing, given twice, or outside [`domain`].
+pub fn all_parameters(list: &str, option: &str) -> Result<Params<f64>, Error> {
+    let mut values = [None; NAMES.len()];
+    for member in list.split(',') {
+        let one = fixed(member).map_err(|error| match error.help {
+            Some(help) => Error::new(error.what).help(help.replace("--fix", option)),
+            None => error,
+        })?;
+        if values[one.index].replace(one.lower).is_some() {
+            return Err(Error::new(format!("{option} gives {} twice", NAMES[one.index])).help("give it once"));
+        }
+    }
+    let missing: Vec<&str> = (0..NAMES.len())
+        .filter(|&k| values[k].is_none())
+        .map(|k| NAMES[k])
+        .collect();
+    if !missing.is_empty() {
+        return Err(
+            Error::new(format!("{option} lacks {}", missing.join(", "))).help(format!(
+                "give all of {}; a lobe that is not there has rho 0",
+                NAMES.join(", ")
+            )),
+        );
+    }
+    Ok(Params::from_array(values.map(Option::unwrap_or_default)))
 }
 
 /// Narrows or widens the bounds of the model's parameters to `ranges`.

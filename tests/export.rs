@@ -1,0 +1,283 @@
+//! `brdfit export`: what each form says is the model, to the digits that it has.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use brdfit::input::{self, ReadOptions};
+use brdfit_suite::literal;
+use brdfit_suite::program::{self, Ran};
+use brdfit_suite::scan::{data, left_out};
+use brdfit_suite::tolerance::{self, check};
+use serde_json::Value;
+
+/// Test data 1 of the paper.
+const PARAMETERS: [f64; 6] = [0.1, 10.0, 0.01, 0.1, 3.0, 1.0];
+const LIST: &str = "rho_d=0.1,rho_s=10,rho_v=0.01,m=0.1,n=3,kappa=1";
+const NAMES: [&str; 6] = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"];
+
+fn brdfit(arguments: &[&str]) -> Ran {
+    program::brdfit(arguments, b"")
+}
+
+fn export(to: &str, name: &str) -> String {
+    let ran = brdfit(&["export", "--params", LIST, "--to", to, "--name", name]);
+    assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
+    ran.output
+}
+
+/// The largest relative difference between a file's values, read as `brdfit fit` reads it, and Eq. 14 as printed.
+fn off(text: &str, least: usize) -> f64 {
+    let scans = input::parse(
+        "file",
+        text.as_bytes(),
+        &ReadOptions {
+            drop_invalid: true,
+            ..ReadOptions::default()
+        },
+    )
+    .unwrap();
+    let [scan] = scans.as_slice() else {
+        panic!("{} scans", scans.len())
+    };
+    assert!(scan.samples.len() > least, "{}", scan.samples.len());
+    let each = scan.samples.iter().map(|sample| {
+        let f = literal::f([sample.theta_i, sample.theta_s, sample.delta_phi], PARAMETERS);
+        (sample.brdf / f - 1.0).abs()
+    });
+    each.fold(0.0, f64::max)
+}
+
+#[test]
+fn zemax_reads_back() {
+    check(off(&export("zemax", "paint"), 20_000), tolerance::ZEMAX_ROUND_TRIP);
+}
+
+#[test]
+fn bird_has_the_model_and_its_brdf() {
+    let text = export("bird", "paint");
+    check(off(&text, 1000), tolerance::BIRD_ROUND_TRIP);
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let model = &file["metadata"]["software"]["simulation_model"];
+    for (place, parameter) in model["parameters"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(parameter["name"], NAMES[place]);
+        assert_eq!(parameter["value"].as_f64(), Some(PARAMETERS[place]));
+        assert!(parameter.get("uncertainty").is_none());
+        assert!(["description", "unit"].iter().all(|key| parameter[key].is_string()));
+    }
+}
+
+#[test]
+fn a_result_brings_its_uncertainty_and_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = folder.path().join("results.json");
+    let scans = ["testdata1_sym_seed1.csv", "testdata2_sym_seed1.csv"].map(data);
+    let [first, second] = scans.each_ref().map(|path| path.to_str().unwrap());
+    let result = result.to_str().unwrap();
+    assert_eq!(
+        brdfit(&["fit", first, second, "--format", "json", "-o", result]).code,
+        0
+    );
+    let fitted: Value = serde_json::from_str(&fs::read_to_string(result).unwrap()).unwrap();
+    let ran = brdfit(&["export", result, "--to", "bird", "--index", "2"]);
+    assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
+    let file: Value = serde_json::from_str(&ran.output).unwrap();
+    assert_eq!(file["metadata"]["sample"]["name"], second);
+    let parameters = &file["metadata"]["software"]["simulation_model"]["parameters"];
+    let mut known = 0;
+    for (place, name) in NAMES.into_iter().enumerate() {
+        assert_eq!(parameters[place]["value"], fitted[1]["parameters"][name]);
+        let stderr = &fitted[1]["uncertainty"]["stderr"][name];
+        assert_eq!(&parameters[place]["uncertainty"], stderr, "{name}");
+        known += usize::from(stderr.is_f64());
+    }
+    assert!(known >= 2);
+    for (index, what) in [
+        (&[] as &[&str], "choose one with --index"),
+        (&["--index", "3"], "none is number 3"),
+        (&["--index", "0"], "none is number 0"),
+    ] {
+        let ran = brdfit(&[&["export", result, "--to", "c"], index].concat());
+        assert!(ran.code == 2 && ran.errors.contains(what), "{}", ran.errors);
+    }
+}
+
+#[test]
+fn what_is_no_result_is_refused() {
+    for (text, what) in [
+        ("{", "no JSON"),
+        ("{}", "no parameters.rho_d"),
+        ("[]", "0 results"),
+        ("7", "no parameters.rho_d"),
+    ] {
+        let ran = program::brdfit(&["export", "-", "--to", "c"], text.as_bytes());
+        assert!(ran.code == 2 && ran.errors.contains(what), "{text}: {}", ran.errors);
+    }
+    let bad = r#"{"parameters": {"rho_d": 0.1, "rho_s": 1, "rho_v": 0, "m": 0, "n": 1.5, "kappa": 0}}"#;
+    assert!(
+        program::brdfit(&["export", "-", "--to", "c"], bad.as_bytes())
+            .errors
+            .contains("m can not be 0")
+    );
+    for (list, what) in [
+        ("rho_d=1", "--params lacks rho_s, rho_v"),
+        ("n=0.5", "n can not be 0.5"),
+        ("n=2,n=3", "gives n twice"),
+    ] {
+        let ran = brdfit(&["export", "--params", list, "--to", "c"]);
+        assert!(ran.code == 2 && ran.errors.contains(what), "{list}: {}", ran.errors);
+    }
+}
+
+#[test]
+fn constants_have_every_bit() {
+    let third = format!("rho_d={},rho_s=1e-300,rho_v=0,m=1e-6,n=1,kappa=1000000", 1.0 / 3.0);
+    let expected: [f64; 6] = [1.0 / 3.0, 1e-300, 0.0, 1e-6, 1.0, 1e6];
+    let export = |to: &str| brdfit(&["export", "--params", &third, "--to", to, "--name", "8 mm/Paint-a.csv"]).output;
+    let header = export("c");
+    let defined = |name: &str| {
+        let start = format!("#define PAINT_A_{} ", name.to_uppercase());
+        header
+            .lines()
+            .find_map(|line| line.strip_prefix(&start))
+            .unwrap()
+            .parse::<f64>()
+            .unwrap()
+    };
+    let constant = export("rust");
+    assert!(
+        constant.contains("pub const PAINT_A: brdfit_core::brdf::Params<f64> ="),
+        "{constant}"
+    );
+    let field = |name: &str| {
+        let start = format!("    {name}: ");
+        let value = constant.lines().find_map(|line| line.strip_prefix(&start)).unwrap();
+        value.strip_suffix(',').unwrap().parse::<f64>().unwrap()
+    };
+    for (name, value) in NAMES.into_iter().zip(expected) {
+        assert_eq!(
+            (defined(name).to_bits(), field(name).to_bits()),
+            (value.to_bits(), value.to_bits()),
+            "{name}"
+        );
+    }
+}
+
+/// What GLSL has and C++ has not, as far as the shader uses it; in double, so that formulas are compared and not roundings.
+const GLSL: &str = "
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#define float double
+using std::exp; using std::max; using std::min; using std::sqrt;
+struct vec3 { double x, y, z; vec3(double a) : x(a), y(a), z(a) {} vec3(double a, double b, double c) : x(a), y(b), z(c) {} };
+static vec3 operator+(vec3 a, vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+static vec3 operator-(vec3 a, vec3 b) { return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
+static vec3 operator*(double s, vec3 a) { return vec3(s * a.x, s * a.y, s * a.z); }
+static double dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+";
+
+const MAIN: &str = r#"
+int main() {
+    double i, s, p;
+    while (std::scanf("%lf %lf %lf", &i, &s, &p) == 3) {
+        vec3 L(std::sin(i), 0.0, std::cos(i));
+        vec3 V(std::sin(s) * std::cos(p), std::sin(s) * std::sin(p), std::cos(s));
+        std::printf("%.17g\n", BRDF(L, V, vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)).x);
+    }
+}
+"#;
+
+#[test]
+fn the_shader_is_the_model() {
+    let text = export("glsl", "paint");
+    assert!(text.starts_with("analytic\n"));
+    let between = |begin: &str, end: &str| text.split_once(begin).unwrap().1.split_once(end).unwrap().0.to_string();
+    let mut program = String::from(GLSL);
+    for (line, expected) in between("::begin parameters\n", "::end parameters")
+        .lines()
+        .zip(PARAMETERS)
+    {
+        let [_, name, least, largest, value] = line.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{line}")
+        };
+        let [least, largest, value] = [least, largest, value].map(|word| word.parse::<f64>().unwrap());
+        assert!(value == expected && least <= value && value <= largest);
+        program += &format!("static const double {name} = {value:?};\n");
+    }
+    program += &between("::begin shader", "::end shader");
+    program += MAIN;
+    let folder = tempfile::tempdir().unwrap();
+    let (source, binary) = (folder.path().join("shader.cpp"), folder.path().join("shader"));
+    fs::write(&source, program).unwrap();
+    let compiled = Command::new("c++").arg(&source).arg("-o").arg(&binary).output();
+    let Ok(compiled) = compiled else {
+        left_out("the BRDF Explorer shader", Path::new("c++"));
+        return;
+    };
+    assert!(
+        compiled.status.success(),
+        "{}",
+        String::from_utf8_lossy(&compiled.stderr)
+    );
+    let mut directions = Vec::new();
+    for i in (0..=80).step_by(10) {
+        for s in (2..=82).step_by(8) {
+            for p in (0..=180).step_by(18) {
+                directions.push([i, s, p].map(|degrees| f64::from(degrees).to_radians()));
+            }
+        }
+    }
+    let list: String = directions
+        .iter()
+        .map(|[i, s, p]| format!("{i:?} {s:?} {p:?}\n"))
+        .collect();
+    fs::write(folder.path().join("in"), list).unwrap();
+    let input = fs::File::open(folder.path().join("in")).unwrap();
+    let output = Command::new(&binary).stdin(input).output().unwrap();
+    let values = String::from_utf8(output.stdout).unwrap();
+    let values: Vec<f64> = values.lines().map(|line| line.parse().unwrap()).collect();
+    assert_eq!(values.len(), directions.len());
+    let each = values
+        .iter()
+        .zip(directions)
+        .map(|(value, at)| (value / literal::f(at, PARAMETERS) - 1.0).abs());
+    check(each.fold(0.0, f64::max), tolerance::SHADER);
+}
+
+#[test]
+fn mitsuba_has_every_bit_and_tells_its_deviation() {
+    let exact = export("mitsuba", "My paint.csv");
+    assert!(exact.contains("NAME = \"my_paint\"\n"));
+    for (name, value) in NAMES.into_iter().zip(PARAMETERS) {
+        assert!(exact.contains(&format!("    \"{name}\": {value:?},\n")));
+    }
+    let native = |list: &str| {
+        let ran = brdfit(&["export", "--params", list, "--to", "mitsuba-native"]);
+        assert_eq!(ran.code, 0);
+        assert!(ran.output.contains(ran.errors.trim_end()));
+        let words: Vec<&str> = ran.errors.split(' ').collect();
+        let number = |place: usize| words[place].parse::<f64>().unwrap();
+        (number(4), number(6), ran.output)
+    };
+    let (least, largest, text) = native(LIST);
+    assert!(least < -50.0 && largest > 20.0, "{text}");
+    assert!(
+        text.contains("\"alpha\": 0.1,")
+            && text.contains("\"specular_reflectance\": {\"type\": \"uniform\", \"value\": 20.0}")
+    );
+    // Without lobes that differ, nothing does.
+    let (least, largest, _) = native("rho_d=0.5,rho_s=0,rho_v=0,m=0.1,n=1.5,kappa=0");
+    assert_eq!((least, largest), (0.0, 0.0));
+    // Rougher facets are masked, and so differ in another way than smooth ones.
+    let (smooth, rough) = (
+        native("rho_d=0,rho_s=1,rho_v=0,m=0.01,n=1.5,kappa=0"),
+        native("rho_d=0,rho_s=1,rho_v=0,m=0.5,n=1.5,kappa=0"),
+    );
+    assert!(
+        smooth.1 < rough.1 && rough.2.contains("= {\n    \"type\": \"roughconductor\""),
+        "{} {}",
+        smooth.1,
+        rough.1
+    );
+}

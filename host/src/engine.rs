@@ -8,6 +8,7 @@ use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, CANDIDATES, Evaluations, Found, PAPER_STARTS};
 use rayon::prelude::*;
 
+use crate::robust::{self, Robust};
 use crate::simd::{FastScan, Simd};
 use crate::uncertainty::{self, Uncertainty};
 
@@ -46,6 +47,8 @@ pub struct FitOptions {
     pub upper: Params<f64>,
     /// The number type.
     pub precision: Precision,
+    /// Leave out samples far from the fit ([`robust`]).
+    pub robust: bool,
     /// The vector instructions; they change speed and no bit.
     pub simd: Simd,
 }
@@ -80,6 +83,7 @@ impl Default for FitOptions {
                 kappa: 100.0,
             },
             precision: Precision::F64,
+            robust: false,
             simd: Simd::best(),
         }
     }
@@ -143,6 +147,8 @@ pub struct Outcome {
     pub improvement_potential: f64,
     /// How many passes were made.
     pub evaluations: Evaluations,
+    /// What a robust fit left out; all else here is of the other samples.
+    pub robust: Option<Robust>,
     /// What the scan tells about the parameters; computed in `f64` whatever the number type of the fit.
     pub uncertainty: Uncertainty,
 }
@@ -176,9 +182,14 @@ impl std::error::Error for FitError {}
 /// # Errors
 /// [`FitError`].
 pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, FitError> {
-    match options.precision {
+    let plain = |samples: &[Sample<f64>], options: &FitOptions| match options.precision {
         Precision::F64 => with_terms::<f64>(samples, options),
         Precision::F32 => with_terms::<f32>(samples, options),
+    };
+    if options.robust {
+        robust::fit(samples, options, plain)
+    } else {
+        plain(samples, options)
     }
 }
 
@@ -295,5 +306,6 @@ fn run<R: Real, const TERMS: u8, const P: usize>(
         minima,
         improvement_potential: found.minima.improvement_potential().f64(),
         evaluations: found.evaluations,
+        robust: None,
     })
 }

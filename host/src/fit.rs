@@ -18,7 +18,9 @@ use crate::report::{self, Report};
 
 /// Fits the model to scans
 #[derive(Args, Debug)]
-#[command(after_help = "Example:\n  brdfit fit paint.csv --terms diffuse,surface --fix n=1.5 --format json")]
+#[command(
+    after_help = "Example:\n  brdfit fit paint.csv --terms diffuse,surface --fix n=1.5 --format json\n  brdfit fit paint.astm --column R --robust --drop-invalid --mask-retro 6 --max-angle 85"
+)]
 pub struct Arguments {
     /// Files with scans, such as CSV with the columns theta_i_deg,theta_s_deg,brdf_per_sr; - is standard input
     #[arg(required = true, value_name = "SCAN")]

@@ -20,6 +20,7 @@ pub mod paper;
 pub mod plot;
 pub mod reflectance;
 pub mod report;
+pub mod robust;
 pub mod shell;
 pub mod simd;
 pub mod simulate;

@@ -28,6 +28,9 @@ pub struct SearchArguments {
     /// Holds a parameter fixed; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     fix: Vec<String>,
+    /// Leaves out samples far from the fit (6 robust standard deviations of ln f), and says how many
+    #[arg(long)]
+    robust: bool,
     /// Number type of the computation
     #[arg(long, value_enum, default_value = "f64")]
     precision: PrecisionName,
@@ -65,6 +68,7 @@ impl SearchArguments {
             },
             seed: self.seed,
             starts: self.starts,
+            robust: self.robust,
             terms: terms(&self.terms)?,
             ..FitOptions::default()
         };

@@ -52,18 +52,34 @@ pub struct AngleOfIncidence {
 impl Report {
     /// Puts a report together.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
+        let (samples, left_out) = without_outliers(measurement, &outcome);
         Report {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
             read_as: measurement.read_as,
-            left_out: measurement.left_out.clone(),
-            angles: by_angle(&measurement.samples, &outcome.params),
-            derived: derived::at_each_angle(&measurement.samples, &outcome.params, &outcome.uncertainty),
+            left_out,
+            angles: by_angle(&samples, &outcome.params),
+            derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
             options: *options,
             outcome,
             elapsed: Some(elapsed),
         }
     }
+}
+
+/// The samples that were fitted, and all that was left out.
+fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample<f64>>, Vec<LeftOut>) {
+    let (mut samples, mut left_out) = (measurement.samples.clone(), measurement.left_out.clone());
+    if let Some(robust) = &outcome.robust {
+        let mut counts = left_out::Counts::default();
+        for &outlier in robust.outliers.iter().rev() {
+            // Degrees as they stand in the file have few decimals.
+            let theta_i = samples.remove(outlier).theta_i.to_degrees();
+            counts.add(left_out::Reason::Outlier, (theta_i * 1e9).round() / 1e9);
+        }
+        left_out.extend(counts.list());
+    }
+    (samples, left_out)
 }
 
 /// ln f of the model with any set of terms, f in sr^-1; `params` are as a fit reports them, with 0 for what is absent.
@@ -132,6 +148,8 @@ struct JsonReport<'a> {
     terms: Vec<&'a str>,
     mse2: f64,
     rms_ln: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    robust_scale: Option<f64>,
     parameters: JsonParameters,
     at_bound: &'a [&'a str],
     uncertainty: known_json::Known,
@@ -199,6 +217,7 @@ fn json_report(report: &Report) -> JsonReport<'_> {
         terms: term_names(report.options.terms),
         mse2: outcome.mse2,
         rms_ln: outcome.rms_ln,
+        robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
         parameters: json_parameters(&outcome.params),
         at_bound: &outcome.at_bound,
         uncertainty: known_json::known(&outcome.params, &outcome.uncertainty, &report.derived),
@@ -326,6 +345,12 @@ fn page(report: &Report, minima: bool) -> String {
         digits(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
+    if let Some(robust) = &outcome.robust {
+        line(format!(
+            "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",
+            digits(robust.scale)
+        ));
+    }
     line(format!(
         "  minima     {} distinct, improvement potential {:.1} %",
         outcome.minima.len(),

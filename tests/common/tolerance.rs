@@ -160,3 +160,15 @@ pub const ZEMAX_ROUND_TRIP: f64 = 1e-9;
 pub const BIRD_ROUND_TRIP: f64 = 5e-13;
 /// BRDF of the shader for BRDF Explorer, computed in double, less that of Eq. 14 as printed; relative; measured 1.5e-13.
 pub const SHADER: f64 = 5e-13;
+// Robust fits: root of the mean squared difference of ln f between the fit of a raw scan and that of the cleaned one.
+
+/// Of a black paint; measured 0.0023.
+pub const ROBUST_AEROGLAZE: f64 = 0.003;
+/// Of another; measured 0.0020.
+pub const ROBUST_MAGIC: f64 = 0.003;
+/// Of carbon nanotubes; measured 0.0135.
+pub const ROBUST_SINGULARITY: f64 = 0.02;
+/// Relative difference of rho_d; measured 0.011.
+pub const ROBUST_RHO_D: f64 = 0.015;
+/// The same of m; measured 0.030.
+pub const ROBUST_M: f64 = 0.04;

@@ -21,6 +21,8 @@ pub enum Reason {
     MaxValue,
     /// Its weight is 0.
     NoWeight,
+    /// It is far from the robust fit.
+    Outlier,
 }
 
 impl Reason {
@@ -32,6 +34,7 @@ impl Reason {
             Reason::MaxAngle => "beyond the largest angle",
             Reason::MaxValue => "saturated",
             Reason::NoWeight => "of weight 0",
+            Reason::Outlier => "far from the fit",
         }
     }
 }

@@ -45,7 +45,7 @@ class Fit:
     x: NDArray[np.float64]
     """The best parameters, dimensionless, in the order of `NAMES`; shape (6,)."""
     cov: NDArray[np.float64]
-    """Their covariance, dimensionless, with those on a bound held there; 0 for what is held or absent, infinite where no sample depends on a parameter; shape (6, 6)."""
+    """Their covariance by the scatter of the residuals, dimensionless, with those on a bound held there; 0 for what is held or absent, infinite where no sample depends on a parameter; shape (6, 6)."""
     stderr: NDArray[np.float64]
     """Their standard errors, the roots of its diagonal; shape (6,)."""
     fun: float

@@ -340,6 +340,7 @@ fn json_keeps_its_contract() {
         "rms_ln",
         "parameters",
         "at_bound",
+        "selection",
         "uncertainty",
         "derived",
         "stop",
@@ -372,6 +373,7 @@ fn json_keeps_its_contract() {
         (&first["mse2"], &first["parameters"]),
         (&one["mse2"], &one["parameters"])
     );
+    assert!(one["selection"].is_null());
     let known = &one["uncertainty"];
     assert_eq!(known["degrees_of_freedom"], 76);
     assert!(known["residual_scale"].is_f64() && known["condition"].as_f64() >= Some(1.0));

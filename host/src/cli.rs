@@ -7,7 +7,7 @@ use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, export, fit, paper, shell, simulate, stability};
+use crate::{converge, export, fit, paper, profile, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -37,6 +37,7 @@ enum Command {
     Merge(merge::Arguments),
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
+    Profile(profile::command::Arguments),
     Converge(converge::Arguments),
     Stability(stability::Arguments),
     Export(export::Arguments),
@@ -137,6 +138,7 @@ fn dispatch(command: &Command, streams: &mut Streams) -> Result<Ended, Error> {
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
+        Command::Profile(arguments) => profile::command::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),

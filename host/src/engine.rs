@@ -1,8 +1,10 @@
 //! Fits one scan: chooses the compiled set of terms and the instructions, runs the search.
 
+use std::marker::PhantomData;
+
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, Params, SURFACE, VOLUME, has, slot};
 use brdfit_core::geometry::{Block, LANES, Observation, Sample, SampleError};
-use brdfit_core::lm::{Bounds, Options, Stop};
+use brdfit_core::lm::{self, Bounds, Options, Stop};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, CANDIDATES, Evaluations, Found, PAPER_STARTS};
@@ -41,6 +43,8 @@ pub struct FitOptions {
     pub starts: Option<u32>,
     /// One of [`TERM_SETS`].
     pub terms: u8,
+    /// Let the scan choose among the sets of [`crate::choose`] in place of `terms`; [`fit`] does not look at it, [`crate::choose::fit`] does.
+    pub choose_terms: bool,
     /// Least parameters; Table 1 by default.
     pub lower: Params<f64>,
     /// Largest parameters.
@@ -66,6 +70,7 @@ impl Default for FitOptions {
             seed: 0,
             starts: None,
             terms: ALL,
+            choose_terms: false,
             lower: Params {
                 rho_d: 0.0,
                 rho_s: 0.0,
@@ -183,8 +188,8 @@ impl std::error::Error for FitError {}
 /// [`FitError`].
 pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, FitError> {
     let plain = |samples: &[Sample<f64>], options: &FitOptions| match options.precision {
-        Precision::F64 => with_terms::<f64>(samples, options),
-        Precision::F32 => with_terms::<f32>(samples, options),
+        Precision::F64 => with_terms(options.terms, Search::<f64>(samples, options, PhantomData))?,
+        Precision::F32 => with_terms(options.terms, Search::<f32>(samples, options, PhantomData))?,
     };
     if options.robust {
         robust::fit(samples, options, plain)
@@ -193,7 +198,25 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, Fit
     }
 }
 
-fn with_terms<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, FitError> {
+/// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost.
+///
+/// # Errors
+/// [`FitError::Terms`].
+pub fn descend(
+    blocks: &[Block<f64>],
+    options: &FitOptions,
+    starts: &[Params<f64>],
+) -> Result<Option<(f64, Params<f64>)>, FitError> {
+    with_terms(options.terms, Descent(blocks, options, starts))
+}
+
+/// A computation with one compiled set of terms; a closure can not be generic.
+trait WithTerms {
+    type Output;
+    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output;
+}
+
+fn with_terms<C: WithTerms>(terms: u8, computation: C) -> Result<C::Output, FitError> {
     const D: u8 = DIFFUSE;
     const S: u8 = SURFACE;
     const V: u8 = VOLUME;
@@ -203,16 +226,44 @@ fn with_terms<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<
     const DSV: u8 = D | S | V;
     const SA: u8 = S | A;
     const SVA: u8 = S | V | A;
-    match options.terms {
-        D => run::<R, D, 1>(samples, options),
-        S => run::<R, S, 3>(samples, options),
-        SA => run::<R, SA, 4>(samples, options),
-        SVA => run::<R, SVA, 5>(samples, options),
-        DS => run::<R, DS, 4>(samples, options),
-        DSA => run::<R, DSA, 5>(samples, options),
-        DSV => run::<R, DSV, 5>(samples, options),
-        ALL => run::<R, ALL, 6>(samples, options),
-        other => Err(FitError::Terms(other)),
+    Ok(match terms {
+        D => computation.run::<D, 1>(),
+        S => computation.run::<S, 3>(),
+        SA => computation.run::<SA, 4>(),
+        SVA => computation.run::<SVA, 5>(),
+        DS => computation.run::<DS, 4>(),
+        DSA => computation.run::<DSA, 5>(),
+        DSV => computation.run::<DSV, 5>(),
+        ALL => computation.run::<ALL, 6>(),
+        other => return Err(FitError::Terms(other)),
+    })
+}
+
+struct Search<'a, R>(&'a [Sample<f64>], &'a FitOptions, PhantomData<R>);
+impl<R: Real> WithTerms for Search<'_, R> {
+    type Output = Result<Outcome, FitError>;
+    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
+        run::<R, TERMS, P>(self.0, self.1)
+    }
+}
+
+struct Descent<'a>(&'a [Block<f64>], &'a FitOptions, &'a [Params<f64>]);
+impl WithTerms for Descent<'_> {
+    type Output = Option<(f64, Params<f64>)>;
+    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
+        let Descent(blocks, options, starts) = self;
+        let scene = FastScan {
+            scan: Scan::<f64, TERMS, P>::new(blocks),
+            simd: options.simd,
+        };
+        let bounds = Scan::<f64, TERMS, P>::bounds(&options.lower, &options.upper);
+        let ends = starts.iter().map(|start| {
+            let start = Scan::<f64, TERMS, P>::coordinates(start);
+            lm::fit(&scene, &bounds, start, &Options::default())
+        });
+        let finite = ends.filter(|fit| fit.at.cost.is_finite());
+        let best = finite.min_by(|a, b| a.at.cost.total_cmp(&b.at.cost))?;
+        Some((best.at.cost, Scan::<f64, TERMS, P>::params(&best.x)))
     }
 }
 

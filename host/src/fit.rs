@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use crate::choose;
 use crate::cli::Streams;
-use crate::engine::{self, FitOptions, Method};
+use crate::engine::{FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
@@ -93,13 +94,16 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
 /// Fits one scan.
 pub(crate) fn fit(measurement: &Measurement, options: &FitOptions) -> Result<Report, Error> {
     let begun = Instant::now();
-    let outcome = engine::fit(&measurement.samples, options);
+    let found = choose::fit(&measurement.samples, options);
     let elapsed = begun.elapsed();
-    match outcome {
-        Ok(outcome) if !outcome.cost.is_finite() => Err(Error::new("no start gives a finite model")
+    match found {
+        Ok((_, outcome, _)) if !outcome.cost.is_finite() => Err(Error::new("no start gives a finite model")
             .in_file(measurement.label())
             .help("take less extreme --bounds or --precision f64")),
-        Ok(outcome) => Ok(Report::new(measurement, options, outcome, elapsed)),
+        Ok((options, outcome, choice)) => Ok(Report {
+            choice,
+            ..Report::new(measurement, &options, outcome, elapsed)
+        }),
         Err(error) => Err(input::explain(measurement, error)),
     }
 }

@@ -5,6 +5,8 @@
 //! A file becomes one or more [`input::Measurement`]s, that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
 
 pub mod batch;
+pub mod bootstrap;
+pub mod choose;
 pub mod cli;
 pub mod converge;
 pub mod derived;
@@ -18,6 +20,7 @@ pub mod options;
 pub mod output;
 pub mod paper;
 pub mod plot;
+pub mod profile;
 pub mod reflectance;
 pub mod report;
 pub mod robust;

@@ -19,7 +19,7 @@ pub struct SearchArguments {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Terms of the model, of diffuse,surface,volume,absorbing
+    /// Terms of the model, of diffuse,surface,volume,absorbing, or auto: the fewest that the scan supports
     #[arg(long, value_name = "LIST", default_value = "all")]
     terms: String,
     /// Bounds of a parameter, in place of Table 1 of the paper; repeatable
@@ -69,7 +69,8 @@ impl SearchArguments {
             seed: self.seed,
             starts: self.starts,
             robust: self.robust,
-            terms: terms(&self.terms)?,
+            terms: if self.terms == AUTO { ALL } else { terms(&self.terms)? },
+            choose_terms: self.terms == AUTO,
             ..FitOptions::default()
         };
         let ranges = self.bounds.iter().map(|text| bounds(text));
@@ -90,6 +91,9 @@ impl SearchArguments {
             .map_err(|error| Error::new(format!("no threads: {error}")).help("take fewer --threads"))
     }
 }
+
+/// The word for terms that the scan chooses.
+const AUTO: &str = "auto";
 
 /// The terms of the model by name.
 pub const TERMS: [(&str, u8); 4] = [

@@ -3,6 +3,7 @@
 mod axis;
 mod converge;
 mod curve;
+mod profile;
 mod svg;
 
 use std::fmt::Write;
@@ -12,6 +13,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 pub use converge::converge_svg;
+pub use profile::profile_svg;
 
 use axis::Axis;
 use curve::{curve, mse2};

@@ -8,6 +8,7 @@ use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::Stop;
 use serde::Serialize;
 
+use crate::choose::{self, Choice};
 use crate::derived::{self, Derived};
 use crate::engine::{FitOptions, Method, Minimum, Outcome, Precision};
 use crate::input::{LeftOut, Measurement, ReadAs, left_out};
@@ -32,6 +33,8 @@ pub struct Report {
     pub options: FitOptions,
     /// What came out.
     pub outcome: Outcome,
+    /// Why these terms, if the scan chose them.
+    pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
     pub derived: Vec<Derived>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
@@ -62,6 +65,7 @@ impl Report {
             derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
             options: *options,
             outcome,
+            choice: None,
             elapsed: Some(elapsed),
         }
     }
@@ -152,6 +156,7 @@ struct JsonReport<'a> {
     robust_scale: Option<f64>,
     parameters: JsonParameters,
     at_bound: &'a [&'a str],
+    selection: Option<choose::Selection>,
     uncertainty: known_json::Known,
     derived: Vec<known_json::AtAngle>,
     stop: &'a str,
@@ -220,6 +225,7 @@ fn json_report(report: &Report) -> JsonReport<'_> {
         robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
         parameters: json_parameters(&outcome.params),
         at_bound: &outcome.at_bound,
+        selection: report.choice.as_ref().map(Choice::selection),
         uncertainty: known_json::known(&outcome.params, &outcome.uncertainty, &report.derived),
         derived: report.derived.iter().map(known_json::at_angle).collect(),
         stop: stop_name(outcome.stop),
@@ -367,6 +373,9 @@ fn page(report: &Report, minima: bool) -> String {
     ));
     if let Some(elapsed) = report.elapsed {
         line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
+    }
+    for choice in report.choice.iter().flat_map(Choice::lines) {
+        line(choice);
     }
     let weighted = report.read_as.weighted;
     for known in known_text::lines(&outcome.params, &outcome.uncertainty, &report.derived, weighted) {

@@ -17,6 +17,16 @@ const SOFT_ROUNDS: u32 = 6;
 /// Searches at most; the set of outliers settles after one or two.
 const ROUNDS: u32 = 20;
 
+/// The samples that a fit used.
+pub fn kept(samples: &[Sample<f64>], outcome: &Outcome) -> Vec<Sample<f64>> {
+    let outliers = outcome.robust.as_ref().map_or(&[][..], |robust| &robust.outliers);
+    let kept = samples
+        .iter()
+        .enumerate()
+        .filter(|(place, _)| !outliers.contains(place));
+    kept.map(|(_, sample)| *sample).collect()
+}
+
 /// What a robust fit left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robust {

@@ -55,6 +55,37 @@ impl Axis {
         }
     }
 
+    /// Any numbers from left to right.
+    pub fn linear(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
+        let (low, high) = range(values, 0.0, 1.0, f64::MIN_POSITIVE);
+        let span = if high > low { high - low } else { low.abs().max(1.0) };
+        let (low, high) = (low - 0.03 * span, high + 0.03 * span);
+        // The least of 1, 2 and 5 times a power of ten that gives few enough labels.
+        let least = (high - low) / (pixels / 70.0);
+        let power = Real::exp(log10(least).floor() / LOG10_E);
+        let step = [1.0, 2.0, 5.0, 10.0]
+            .into_iter()
+            .map(|k| k * power)
+            .find(|&step| step >= least);
+        let step = step.unwrap_or(10.0 * power);
+        let ticks = steps(low, high, step).map(|at| Tick {
+            at,
+            label: Some(svg::number(at)),
+        });
+        Axis {
+            low,
+            high,
+            pixels,
+            ticks: ticks.collect(),
+            upwards: false,
+        }
+    }
+
+    /// The same from bottom to top.
+    pub fn upwards(self) -> Axis {
+        Axis { upwards: true, ..self }
+    }
+
     /// log10 of a quantity from bottom to top; at least half a decade.
     pub fn logarithm(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
         let (low, high) = range(values, -2.0, 0.0, 0.5);

@@ -136,7 +136,7 @@ fn four(x: f64) -> String {
 }
 
 /// One digit and `decimals` more.
-fn significant(x: f64, decimals: usize) -> String {
+pub(crate) fn significant(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$e}");
     let rounded: f64 = text.parse().unwrap_or(x);
     if rounded == 0.0 || (1e-4..1e4).contains(&rounded.abs()) {

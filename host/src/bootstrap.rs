@@ -1,0 +1,82 @@
+//! Parametric bootstrap: the same scan measured again and again, in the computer.
+
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::real::Real;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+use crate::engine::{self, FitError, FitOptions, Outcome};
+use crate::report;
+
+/// Random numbers of copy `copy` of `seed`: a function of both alone, whatever thread draws them.
+#[derive(Clone, Debug)]
+pub struct Noise(Xoshiro256PlusPlus);
+
+impl Noise {
+    /// The generator of one copy.
+    pub fn new(seed: u64, copy: u64) -> Self {
+        // The golden ratio's odd multiples, as in SplitMix64, which spreads them over the state.
+        let mixed = seed ^ copy.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        Noise(Xoshiro256PlusPlus::seed_from_u64(mixed))
+    }
+
+    /// Uniform in 0 to 1.
+    pub fn unit(&mut self) -> f64 {
+        f64::unit(self.0.next_u64())
+    }
+
+    /// Standard normal (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        let radius = Real::sqrt(-2.0 * Real::ln(1.0 - self.unit()));
+        radius * Real::sin_cos(std::f64::consts::TAU * self.unit()).1
+    }
+}
+
+/// The model at the angles of `samples`, with normal errors of ln f of standard deviation `scale` over the sample's weight.
+pub fn copy(samples: &[Sample<f64>], params: &Params<f64>, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
+    // The exponential is a normal number within this.
+    const LARGEST_LN: f64 = 700.0;
+    let one = |sample: &Sample<f64>| {
+        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi);
+        let ln_f = geometry.map_or(0.0, |geometry| report::ln_f(params, &geometry));
+        let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
+        let ln_f = ln_f + scale / weight * noise.normal();
+        Sample {
+            brdf: Real::exp(ln_f.clamp(-LARGEST_LN, LARGEST_LN)),
+            ..*sample
+        }
+    };
+    samples.iter().map(one).collect()
+}
+
+/// The parameters of `count` copies, searched anew each, in order of the copies; the threads of the current rayon pool share them, and change no bit.
+///
+/// # Errors
+/// [`FitError`].
+pub fn bootstrap(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: &Outcome,
+    count: u32,
+) -> Result<Vec<Params<f64>>, FitError> {
+    let one = |k: u32| {
+        let mut noise = Noise::new(options.seed, u64::from(k));
+        let copy = copy(samples, &outcome.params, outcome.uncertainty.scale, &mut noise);
+        Ok(engine::fit(&copy, options)?.params)
+    };
+    (0..count).into_par_iter().map(one).collect()
+}
+
+/// The value below which this share of `values` lies, between two of them linearly; NaN if there are none.
+pub fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let place = share * sorted.len().saturating_sub(1) as f64;
+    let (below, above) = (place.floor() as usize, place.ceil() as usize);
+    match (sorted.get(below), sorted.get(above)) {
+        (Some(&a), Some(&b)) => a + (b - a) * (place - below as f64),
+        _ => f64::NAN,
+    }
+}

@@ -1,0 +1,98 @@
+//! Profiles of parameters: the rise of the cost over each, with the levels of 68 and 95 %.
+
+use std::fmt::Write;
+
+use super::axis::{Axis, log10};
+use super::{frame, svg};
+use crate::profile::{LEVELS, Profile, name, threshold};
+
+/// Sizes in pixels.
+const WIDTH: f64 = 900.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 16.0;
+const TOP: f64 = 60.0;
+const BOTTOM: f64 = 50.0;
+const GAP: f64 = 24.0;
+const CAPTION: f64 = 44.0;
+const HEIGHT: f64 = 240.0;
+/// The largest rise that is drawn.
+const HIGHEST: f64 = 9.0;
+/// A panel whose ends have this ratio is logarithmic.
+const WIDE: f64 = 30.0;
+
+/// One panel a profile: the rise of the cost over the variance of a residual, over the parameter.
+pub fn profile_svg(title: &str, profiles: &[Profile]) -> String {
+    let columns = profiles.len().clamp(1, 3);
+    let rows = profiles.len().max(1).div_ceil(columns);
+    let width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64;
+    let total = TOP + rows as f64 * (HEIGHT + CAPTION) + BOTTOM;
+    let mut out = String::new();
+    svg::open(&mut out, WIDTH, total);
+    let style = "font-size=\"17\" font-weight=\"bold\"";
+    svg::text(&mut out, LEFT, 26.0, style, &svg::escape(title));
+    let _ = write!(
+        out,
+        "<clipPath id=\"a\"><rect width=\"{width:.1}\" height=\"{HEIGHT:.1}\"/></clipPath>"
+    );
+    let y = Axis::linear([0.0, HIGHEST].into_iter(), HEIGHT).upwards();
+    for (place, profile) in profiles.iter().enumerate() {
+        let left = LEFT + (place % columns) as f64 * (width + GAP);
+        let top = TOP + (place / columns) as f64 * (HEIGHT + CAPTION);
+        let _ = write!(out, "\n<g transform=\"translate({left:.1} {top:.1})\">");
+        panel(&mut out, profile, &y, width, place % columns == 0);
+        out.push_str("</g>");
+    }
+    let centre = 0.5 * (TOP + total - BOTTOM);
+    let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
+    svg::text(
+        &mut out,
+        18.0,
+        centre,
+        &turned,
+        "rise of the cost, variances of a residual",
+    );
+    out.push_str("\n</svg>\n");
+    out
+}
+
+fn panel(out: &mut String, profile: &Profile, y: &Axis, width: f64, first: bool) {
+    let near: Vec<_> = profile
+        .points
+        .iter()
+        .filter(|point| profile.rise(point) <= 1.5 * HIGHEST)
+        .collect();
+    let values = || near.iter().map(|point| point.value);
+    let (least, most) = values().fold((f64::MAX, f64::MIN), |(a, b), value| (a.min(value), b.max(value)));
+    let logarithmic = least > 0.0 && most > WIDE * least;
+    let scale = |value: f64| if logarithmic { log10(value) } else { value };
+    let x = if logarithmic {
+        Axis::logarithm(values().map(log10), width).rightwards()
+    } else {
+        Axis::linear(values(), width)
+    };
+    frame(out, &x, y, first, true);
+    let caption = format!("{} = {}", name(profile), svg::number(profile.best.value));
+    svg::text(out, 0.0, -8.0, "", &caption);
+    out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">");
+    for (level, dashes) in LEVELS.into_iter().zip(["2 4", "7 4"]) {
+        let at = y.pixel(threshold(level, profile.degrees_of_freedom));
+        let style = format!("stroke=\"#888\" stroke-dasharray=\"{dashes}\"");
+        svg::path(out, &style, &[(0.0, at), (width, at)]);
+        let grey = "text-anchor=\"end\" fill=\"#666\" font-size=\"11\"";
+        svg::text(out, width - 3.0, at - 3.0, grey, &format!("{:.0} %", 100.0 * level));
+    }
+    let line: Vec<(f64, f64)> = profile
+        .points
+        .iter()
+        .map(|point| {
+            (
+                x.pixel(scale(point.value)),
+                y.pixel(profile.rise(point).min(3.0 * HIGHEST)),
+            )
+        })
+        .filter(|point| point.0.is_finite() && point.1.is_finite())
+        .collect();
+    svg::path(out, svg::THICK, &line);
+    svg::dots(out, line.into_iter());
+    out.push_str("</g>");
+}

@@ -1,0 +1,145 @@
+//! `brdfit profile`: which values of a parameter a scan allows.
+
+use std::path::PathBuf;
+
+use brdfit_core::brdf::{NAMES, Params, has};
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+
+use super::{Profile, json, profile, text};
+use crate::bootstrap::bootstrap;
+use crate::choose;
+use crate::cli::Streams;
+use crate::engine::{FitError, FitOptions, Outcome};
+use crate::error::Error;
+use crate::input::{self, ReadOptions, left_out};
+use crate::options::{SearchArguments, term_names};
+use crate::output::{deliver, replace_file};
+use crate::{plot, robust};
+
+/// Shows which values of a parameter a scan allows: the cost over it, minimised over the others
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  brdfit profile paint.csv --parameter n --plot n.svg")]
+pub struct Arguments {
+    /// A scan, as `brdfit fit` reads it; - is standard input
+    #[arg(value_name = "SCAN")]
+    scan: PathBuf,
+    /// Parameter to profile; repeatable [default: all that are not fixed]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    parameter: Vec<String>,
+    /// Adds percentiles over N copies of the fitted scan with new noise
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    bootstrap: Option<u32>,
+    #[command(flatten)]
+    search: SearchArguments,
+    /// Form of the result
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// Writes the result to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Draws the profiles, as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// What the command found about one scan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Findings {
+    /// The scan's name.
+    pub name: String,
+    /// Its fit.
+    pub outcome: Outcome,
+    /// One for each parameter asked for.
+    pub profiles: Vec<Profile>,
+    /// The parameters of each copy; empty without bootstrap.
+    pub copies: Vec<Params<f64>>,
+    /// The seed of the search and of the copies.
+    pub seed: u64,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// The first thing that is wrong with options, file or scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let options = arguments.search.fit_options()?;
+    let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
+    let pool = arguments.search.pool()?;
+    let samples = &measurement.samples;
+    let found = pool.install(|| -> Result<_, FitError> {
+        let (options, outcome, _) = choose::fit(samples, &options)?;
+        let samples = &robust::kept(samples, &outcome)[..];
+        let options = FitOptions {
+            robust: false,
+            ..options
+        };
+        let parameters = match parameters(&arguments.parameter, &options) {
+            Ok(parameters) => parameters,
+            Err(error) => return Ok(Err(error)),
+        };
+        let each = parameters.par_iter();
+        let profiles = each.map(|&index| profile(samples, &options, &outcome, index));
+        let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
+        let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
+        Ok(Ok((outcome, profiles, copies)))
+    });
+    let (outcome, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let fail = |what: &str| Error::new(what).in_file(measurement.label());
+    if !outcome.cost.is_finite() {
+        return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
+    }
+    if outcome.uncertainty.degrees_of_freedom == 0 {
+        return Err(
+            fail("as many parameters as samples: every value may fit").help("measure more, or --fix parameters")
+        );
+    }
+    let findings = Findings {
+        name: measurement.label(),
+        outcome,
+        profiles,
+        copies,
+        seed: options.seed,
+    };
+    let written = match arguments.format {
+        Format::Text => text::write(&findings),
+        Format::Json => json::write(&findings),
+    };
+    if let Some(path) = &arguments.plot {
+        replace_file(path, plot::profile_svg(&findings.name, &findings.profiles).as_bytes())?;
+    }
+    deliver(written.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    left_out::note(&[measurement], streams.errors);
+    Ok(())
+}
+
+/// The places of the parameters asked for.
+fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Error> {
+    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
+    let free = |index: usize| has(options.terms, index) && lower[index] < upper[index];
+    let all: Vec<usize> = (0..NAMES.len()).filter(|&index| free(index)).collect();
+    let known = || all.iter().map(|&index| NAMES[index]).collect::<Vec<_>>().join(", ");
+    if names.is_empty() {
+        return Ok(all);
+    }
+    let one = |name: &String| {
+        let index = all.iter().copied().find(|&index| NAMES[index] == name.trim());
+        index.ok_or_else(|| {
+            let terms = term_names(options.terms).join(",");
+            Error::new(format!(
+                "'{}' is no free parameter of the terms {terms}",
+                crate::error::shown(name)
+            ))
+            .help(format!("the free parameters are {}", known()))
+        })
+    };
+    names.iter().map(one).collect()
+}

@@ -1,0 +1,138 @@
+//! Choice of terms: right on scenes of known terms, its criteria against their formulas, and the command's contract.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "oracles may use std's functions; the code under test may not"
+)]
+
+use brdfit::bootstrap::{Noise, copy};
+use brdfit::choose::{self, SETS};
+use brdfit::engine::{self, FitOptions};
+use brdfit::options::term_names;
+use brdfit::profile::threshold;
+use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, Params, SURFACE, has, parameters};
+use brdfit_core::geometry::Sample;
+use brdfit_suite::program;
+use brdfit_suite::scan::{data, scan};
+use serde_json::Value;
+
+fn auto() -> FitOptions {
+    FitOptions {
+        choose_terms: true,
+        ..FitOptions::default()
+    }
+}
+
+/// Two angles of a scene with all terms that the set has, each plain to see, and 2 % noise.
+fn scene(terms: u8, seed: u64) -> Vec<Sample<f64>> {
+    let all = [0.1, 1.0, 0.05, 0.2, 1.5, 1.5];
+    let absent = [0.0, 0.0, 0.0, 0.2, 1.5, 0.0];
+    let params = std::array::from_fn(|k| if has(terms, k) { all[k] } else { absent[k] });
+    let directions = [20.0f64, 65.0].into_iter().flat_map(|theta_i| {
+        (-84..=84)
+            .step_by(2)
+            .map(move |theta_s| Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0))
+    });
+    let samples: Vec<_> = directions.collect();
+    copy(&samples, &Params::from_array(params), 0.02, &mut Noise::new(5, seed))
+}
+
+#[test]
+fn finds_the_terms_of_a_scene() {
+    let (mut right, mut all) = (0, 0);
+    for (terms, _) in SETS {
+        for seed in 0..12 {
+            let samples = scene(terms, seed);
+            let (options, outcome, choice) = choose::fit(&samples, &auto()).unwrap();
+            let choice = choice.unwrap();
+            all += 1;
+            right += u32::from(choice.terms == terms);
+            // The compiled set of the chosen terms is the one that ran.
+            assert_eq!(options.terms, choice.terms);
+            let alone = FitOptions {
+                terms: choice.terms,
+                ..FitOptions::default()
+            };
+            assert_eq!(outcome, engine::fit(&samples, &alone).unwrap());
+            let free = outcome.uncertainty.places.iter().flatten().count();
+            assert_eq!(free, parameters(choice.terms));
+        }
+    }
+    // 19 of 20 are asked for.
+    assert!(right * 20 >= all * 19, "{right} of {all}");
+}
+
+/// AICc and BIC as in Burnham and Anderson (2002), and the F test.
+#[test]
+fn criteria() {
+    let samples = scene(ALL, 1);
+    let count = samples.len() as f64;
+    let choice = choose::fit(&samples, &auto()).unwrap().2.unwrap();
+    assert_eq!(choice.candidates.len(), SETS.len());
+    for (candidate, (terms, _)) in choice.candidates.iter().zip(SETS) {
+        assert_eq!((candidate.terms, candidate.parameters), (terms, parameters(terms)));
+        let k = candidate.parameters as f64 + 1.0;
+        let likelihood = -0.5 * count * (candidate.cost / count).ln();
+        let aicc = 2.0 * k * count / (count - k - 1.0) - 2.0 * likelihood;
+        assert!((candidate.aicc - aicc).abs() < 1e-9 * aicc.abs());
+        assert!((candidate.bic - (k * count.ln() - 2.0 * likelihood)).abs() < 1e-9 * aicc.abs());
+    }
+    assert_eq!(choice.candidates[0].p_value, None);
+    assert!(choice.candidates[1].p_value.unwrap() < 1e-10);
+    let samples = scene(DIFFUSE | SURFACE, 1);
+    let choice = choose::fit(&samples, &auto()).unwrap().2.unwrap();
+    // One parameter more: the F test is the two-sided t test, of which `threshold` has the quantiles.
+    let [plain, absorbing] = [1, 2].map(|k| choice.candidates[k]);
+    let left = samples.len() - absorbing.parameters;
+    let f = (plain.cost / absorbing.cost - 1.0) * left as f64;
+    let limit = threshold(1.0 - absorbing.p_value.unwrap(), left);
+    assert!((f / limit - 1.0).abs() < 1e-3, "{f} {limit}");
+}
+
+#[test]
+fn bounds_that_need_a_term_keep_it() {
+    let samples = scene(DIFFUSE | SURFACE, 3);
+    let mut options = auto();
+    (options.lower.kappa, options.upper.kappa) = (1.0, 1.0);
+    let choice = choose::fit(&samples, &options).unwrap().2.unwrap();
+    assert!(
+        choice
+            .candidates
+            .iter()
+            .all(|one| has(one.terms, 5) || one.terms == DIFFUSE)
+    );
+    assert_ne!(choice.terms, DIFFUSE);
+    // A held parameter is not counted.
+    let absorbing = choice.candidates.iter().find(|one| has(one.terms, 5)).unwrap();
+    assert_eq!(absorbing.parameters, parameters(absorbing.terms) - 1);
+    // Without noise the smallest set that is exact is chosen, not the one with the luckiest rounding.
+    let params = Params::from_array([0.1, 1.0, 0.0, 0.2, 1.5, 0.0]);
+    let exact = copy(&samples, &params, 0.0, &mut Noise::new(0, 0));
+    assert_eq!(choose::fit(&exact, &auto()).unwrap().0.terms, DIFFUSE | SURFACE);
+    // Too few samples for the larger sets: those are no candidates.
+    let few = choose::fit(&samples[..5], &auto()).unwrap().2.unwrap();
+    assert!(few.candidates.iter().all(|one| one.parameters <= 5) && few.candidates.len() < SETS.len());
+}
+
+#[test]
+fn command() {
+    let file = data("testdata3_sym_seed1.csv");
+    let file = file.to_str().unwrap();
+    let ran = program::brdfit(&["fit", file, "--terms", "auto"], b"");
+    assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
+    let samples = scan(&data("testdata3_sym_seed1.csv"));
+    let (options, outcome, choice) = choose::fit(&samples, &auto()).unwrap();
+    assert!(ran.output.contains(&choice.unwrap().sentence()), "{}", ran.output);
+    assert_eq!(ran.output.matches("p = ").count(), 4);
+    let ran = program::brdfit(&["fit", file, "--terms", "auto", "--format", "json"], b"");
+    let json: Value = serde_json::from_str(&ran.output).unwrap();
+    assert_eq!(json["terms"], serde_json::json!(term_names(options.terms)));
+    let selection = &json["selection"];
+    assert_eq!(selection["criterion"], "bic");
+    assert_eq!(selection["candidates"].as_array().unwrap().len(), SETS.len());
+    assert!(selection["candidates"][0]["f_test_p"].is_null() && selection["candidates"][1]["f_test_p"].is_f64());
+    for (k, name) in NAMES.iter().enumerate() {
+        assert_eq!(json["parameters"][name].as_f64(), Some(outcome.params.to_array()[k]));
+    }
+    let ran = program::brdfit(&["profile", file, "--terms", "auto", "--parameter", "rho_d"], b"");
+    assert_eq!(ran.code, 0);
+}

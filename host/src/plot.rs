@@ -1,10 +1,14 @@
 //! A scan with its fits as a picture: points, the distinct minima as thin lines, the best as a thick one.
 
+mod albedo;
 mod axis;
 mod converge;
 mod curve;
+mod polar;
 mod profile;
+mod residuals;
 mod svg;
+mod waterfall;
 
 use std::fmt::Write;
 
@@ -12,8 +16,12 @@ use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
+pub use albedo::albedo_svg;
 pub use converge::converge_svg;
+pub use polar::polar_svg;
 pub use profile::profile_svg;
+pub use residuals::residuals_svg;
+pub use waterfall::waterfall_svg;
 
 use axis::Axis;
 use curve::{curve, mse2};

@@ -126,6 +126,36 @@ impl Axis {
         }
     }
 
+    /// A quantity itself from left to right, or with [`Axis::upwards`] from bottom to top.
+    pub fn linear(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
+        let (low, high) = range(values, 0.0, 1.0, 1e-12);
+        let margin = 0.05 * (high - low);
+        let (low, high) = (low - margin, high + margin);
+        let least = (high - low) / (pixels / 44.0);
+        let decade = Real::exp(log10(least).floor() / LOG10_E);
+        let step = decade
+            * [1.0, 2.0, 5.0]
+                .into_iter()
+                .find(|s| s * decade >= least)
+                .unwrap_or(10.0);
+        let ticks = steps(low, high, step).map(|at| Tick {
+            at,
+            label: Some(svg::number(at).replace('-', "−")),
+        });
+        Axis {
+            low,
+            high,
+            pixels,
+            ticks: ticks.collect(),
+            upwards: false,
+        }
+    }
+
+    /// The same from bottom to top.
+    pub fn upwards(self) -> Axis {
+        Axis { upwards: true, ..self }
+    }
+
     /// The same from left to right.
     pub fn rightwards(self) -> Axis {
         Axis { upwards: false, ..self }

@@ -7,7 +7,7 @@ use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, export, fit, paper, profile, shell, simulate, stability};
+use crate::{converge, export, fit, page, paper, profile, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -33,6 +33,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Fit(fit::Arguments),
+    Report(page::Arguments),
     Batch(batch::Arguments),
     Merge(merge::Arguments),
     Simulate(simulate::Arguments),
@@ -86,6 +87,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
     let mut nowhere = std::io::sink();
     let ended = dispatch(
         &cli.command,
+        &arguments,
         &mut Streams {
             input: streams.input,
             output: streams.output,
@@ -131,10 +133,11 @@ fn color(arguments: &[OsString], auto: bool) -> bool {
     }
 }
 
-fn dispatch(command: &Command, streams: &mut Streams) -> Result<Ended, Error> {
+fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Result<Ended, Error> {
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
+        Command::Report(arguments) => page::run(arguments, given, streams),
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),

@@ -70,9 +70,7 @@ impl Measurement {
 /// # Errors
 /// The first file that is missing, not understood, or leaves a doubt about what was measured: with its line and column.
 pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> Result<Vec<Measurement>, Error> {
-    if paths.iter().filter(|path| path.as_os_str() == STDIN).count() > 1 {
-        return Err(Error::new("standard input can be read only once").help("give - once"));
-    }
+    once(paths)?;
     let mut scans = Vec::new();
     for path in paths {
         scans.extend(read_file(path, options, stdin)?);
@@ -80,17 +78,40 @@ pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> R
     Ok(scans)
 }
 
+/// The name and the bytes of every file, in order.
+///
+/// # Errors
+/// The first file that is missing or not readable.
+pub fn read_bytes(paths: &[PathBuf], stdin: &mut dyn Read) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    once(paths)?;
+    let each = paths.iter();
+    each.map(|path| Ok((path.display().to_string(), bytes_of(path, stdin)?)))
+        .collect()
+}
+
 /// Reads the scans of one file, or of standard input if its name is `-`.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_file(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Result<Vec<Measurement>, Error> {
-    let bytes = if path.as_os_str() == STDIN {
-        bytes::of_stdin(stdin)?
-    } else {
-        bytes::of_file(path)?
-    };
+    let bytes = bytes_of(path, stdin)?;
     parse(&path.display().to_string(), &bytes, options)
+}
+
+/// Refuses to read standard input twice.
+fn once(paths: &[PathBuf]) -> Result<(), Error> {
+    if paths.iter().filter(|path| path.as_os_str() == STDIN).count() > 1 {
+        return Err(Error::new("standard input can be read only once").help("give - once"));
+    }
+    Ok(())
+}
+
+fn bytes_of(path: &Path, stdin: &mut dyn Read) -> Result<Vec<u8>, Error> {
+    if path.as_os_str() == STDIN {
+        bytes::of_stdin(stdin)
+    } else {
+        bytes::of_file(path)
+    }
 }
 
 /// Reads a file that must hold one scan.

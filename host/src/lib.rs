@@ -18,6 +18,7 @@ pub mod input;
 pub mod interrupt;
 pub mod options;
 pub mod output;
+pub mod page;
 pub mod paper;
 pub mod plot;
 pub mod profile;

@@ -130,7 +130,7 @@ pub fn stop_name(stop: Stop) -> &'static str {
     }
 }
 
-fn stop_meaning(stop: Stop) -> &'static str {
+pub(crate) fn stop_meaning(stop: Stop) -> &'static str {
     match stop {
         Stop::Cost => "converged: no step promises less",
         Stop::Step => "converged as far as rounding allows",
@@ -430,7 +430,7 @@ fn minima_table(minima: &[Minimum]) -> String {
 }
 
 /// Six significant digits, for reading.
-fn digits(x: f64) -> String {
+pub(crate) fn digits(x: f64) -> String {
     let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
     if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
         format!("{rounded}")

@@ -61,7 +61,7 @@ impl Axis {
         let span = if high > low { high - low } else { low.abs().max(1.0) };
         let (low, high) = (low - 0.03 * span, high + 0.03 * span);
         // The least of 1, 2 and 5 times a power of ten that gives few enough labels.
-        let least = (high - low) / (pixels / 70.0);
+        let least = (high - low) / (pixels / 70.0).max(3.0);
         let power = Real::exp(log10(least).floor() / LOG10_E);
         let step = [1.0, 2.0, 5.0, 10.0]
             .into_iter()
@@ -70,7 +70,7 @@ impl Axis {
         let step = step.unwrap_or(10.0 * power);
         let ticks = steps(low, high, step).map(|at| Tick {
             at,
-            label: Some(svg::number(at)),
+            label: Some(svg::number(at).replace('-', "−")),
         });
         Axis {
             low,
@@ -124,36 +124,6 @@ impl Axis {
             ticks,
             upwards: true,
         }
-    }
-
-    /// A quantity itself from left to right, or with [`Axis::upwards`] from bottom to top.
-    pub fn linear(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
-        let (low, high) = range(values, 0.0, 1.0, 1e-12);
-        let margin = 0.05 * (high - low);
-        let (low, high) = (low - margin, high + margin);
-        let least = (high - low) / (pixels / 44.0);
-        let decade = Real::exp(log10(least).floor() / LOG10_E);
-        let step = decade
-            * [1.0, 2.0, 5.0]
-                .into_iter()
-                .find(|s| s * decade >= least)
-                .unwrap_or(10.0);
-        let ticks = steps(low, high, step).map(|at| Tick {
-            at,
-            label: Some(svg::number(at).replace('-', "−")),
-        });
-        Axis {
-            low,
-            high,
-            pixels,
-            ticks: ticks.collect(),
-            upwards: false,
-        }
-    }
-
-    /// The same from bottom to top.
-    pub fn upwards(self) -> Axis {
-        Axis { upwards: true, ..self }
     }
 
     /// The same from left to right.

@@ -122,7 +122,7 @@ fn table(derived: &[Derived]) -> Vec<String> {
 }
 
 /// A value with its standard error, as "0.5123 +- 0.0021".
-fn shown(value: Value) -> String {
+pub(crate) fn shown(value: Value) -> String {
     format!("{} +- {}", four(value.value), short(value.stderr))
 }
 

@@ -1,0 +1,314 @@
+//! The page itself.
+
+use brdfit_core::brdf::{NAMES, has};
+use brdfit_core::uncertainty::Place;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::section::Section;
+use crate::engine::Precision;
+use crate::input::left_out;
+use crate::options::term_names;
+use crate::output::shortest;
+use crate::report::{digits, method_name, stop_meaning};
+use crate::uncertainty::text::{short, shown};
+use crate::uncertainty::words::{percent, undetermined};
+
+const STYLE: &str = include_str!("style.css");
+
+/// What the parameters mean, in their order.
+const MEANINGS: [&str; 6] = [
+    "diffuse reflectance",
+    "weight of the surface lobe",
+    "weight of the volume lobe",
+    "slope of the facets",
+    "index of refraction, real part",
+    "index of refraction, imaginary part",
+];
+
+/// Rows of the table of minima at most.
+const MINIMA: usize = 12;
+/// Rows of the table of angles at most.
+const ANGLES: usize = 24;
+
+/// One file that needs no other; `command` is the line that made it.
+pub fn page(sections: &[Section], command: &str) -> String {
+    let title = match sections {
+        [one] => format!("BRDF fit of {}", one.label),
+        several => format!("BRDF fits of {} scans", several.len()),
+    };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { (title) }
+                    p { "Modified Cook-Torrance model of Bishop, Butler and Marciniak, Opt. Eng. 60(9), 094103 (2021), fitted to ln BRDF by brdfit " (env!("CARGO_PKG_VERSION")) "." }
+                }
+                @if sections.len() > 1 { (overview(sections)) }
+                @for (place, section) in sections.iter().enumerate() { (scan(place, section, sections.len() > 1, command)) }
+            }
+        }
+    };
+    page.into_string() + "\n"
+}
+
+/// One row a scan.
+fn overview(sections: &[Section]) -> Markup {
+    html! {
+        table {
+            caption { "Best fits." }
+            thead { tr {
+                th.text { "scan" } th { "samples" }
+                @for name in NAMES { th { (symbol(name)) } }
+                th { "rms of ln " i { "f" } }
+            } }
+            tbody {
+                @for (place, section) in sections.iter().enumerate() { tr {
+                    @let outcome = &section.report.outcome;
+                    td.text { a href={ "#scan" (place + 1) } { (section.label) } }
+                    td { (outcome.samples) }
+                    @for (index, value) in outcome.params.to_array().into_iter().enumerate() {
+                        td { @if has(section.report.options.terms, index) { (number(value)) } @else { "–" } }
+                    }
+                    td { (percent(outcome.rms_ln)) }
+                } }
+            }
+        }
+    }
+}
+
+fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup {
+    html! {
+        section id={ "scan" (place + 1) } {
+            @if heading { h2 { (section.label) } }
+            (summary(section))
+            (parameters(section))
+            @for (number, (figure, caption)) in section.figures.iter().enumerate() {
+                figure {
+                    (PreEscaped(inline(figure, &format!("{}-{}", place + 1, number + 1))))
+                    figcaption { b { "Figure " (number + 1) ". " } (caption) }
+                }
+                // Each table stands beside the figure that shows the same.
+                @if number == 3 { (minima(section)) }
+                @if number == 4 { (angles(section)) }
+            }
+            (provenance(section, command))
+        }
+    }
+}
+
+/// What matters most, in sentences.
+fn summary(section: &Section) -> Markup {
+    let (report, outcome) = (&section.report, &section.report.outcome);
+    let known = &outcome.uncertainty;
+    html! {
+        ul.summary {
+            li {
+                "The best fit leaves an rms residual of ln " i { "f" } " of " b { (percent(outcome.rms_ln)) }
+                " over " (outcome.samples) " samples at " (report.angles.len())
+                @if report.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (stop_meaning(outcome.stop)) "."
+            }
+            @for open in undetermined(&outcome.params, known, &report.derived) {
+                li.flag { @if !open.through.is_empty() { "The scan tells of " } (open.sentence()) "." }
+            }
+            @if report.derived.iter().any(|at| at.reflectance.value > 1.0) {
+                li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
+            }
+            @if section.missed() {
+                li.flag { "A start of the paper's method ended below this fit: take --method paper, or another --seed." }
+            }
+            @if let Some(left_out) = left_out::summary(&report.left_out) {
+                li { "Left out: " (left_out) "." }
+            }
+        }
+    }
+}
+
+fn parameters(section: &Section) -> Markup {
+    let (options, outcome) = (&section.report.options, &section.report.outcome);
+    let known = &outcome.uncertainty;
+    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
+    html! {
+        table {
+            caption { "Parameters of the best fit, all dimensionless; ± is one standard error." }
+            thead { tr { th.text { "parameter" } th.text { "meaning" } th { "value" } th { "±" } th { "bounds" } th.text { "remark" } } }
+            tbody {
+                @for (index, value) in outcome.params.to_array().into_iter().enumerate() {
+                    @if has(options.terms, index) {
+                        tr {
+                            td.text { (symbol(NAMES[index])) }
+                            td.text { (MEANINGS[index]) }
+                            td { (number(value)) }
+                            td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (short(known.stderr[index])) } @else { "–" } }
+                            td { (shortest(lower[index])) " – " (shortest(upper[index])) }
+                            td.text { (remark(section, index)) }
+                        }
+                    }
+                }
+            }
+        }
+        @let strong = correlated(section);
+        @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (short(known.condition)) "." } }
+    }
+}
+
+/// Where a parameter ended, if not inside its bounds, or how well it is known.
+fn remark(section: &Section, index: usize) -> String {
+    let outcome = &section.report.outcome;
+    let known = &outcome.uncertainty;
+    let on = |bound: &str, push: f64| {
+        if push.abs() < 0.05 {
+            format!("on its {bound} bound, where the data want it")
+        } else {
+            format!(
+                "on its {bound} bound; the data push beyond by {:.1} standard errors",
+                push.abs()
+            )
+        }
+    };
+    match known.places[index] {
+        Some(Place::Lower) => on("lower", known.push[index]),
+        Some(Place::Upper) => on("upper", known.push[index]),
+        Some(Place::Fixed) => "fixed".into(),
+        Some(Place::Unseen) => "no sample depends on it".into(),
+        _ => {
+            let open = undetermined(&outcome.params, known, &section.report.derived);
+            let name = NAMES[index];
+            let not = open.iter().any(|open| open.parameters.contains(&name));
+            if not { "not determined".into() } else { String::new() }
+        }
+    }
+}
+
+/// Pairs with a correlation of 0.9 and more.
+fn correlated(section: &Section) -> Vec<String> {
+    let known = &section.report.outcome.uncertainty;
+    let pairs = (0..NAMES.len()).flat_map(|i| (i + 1..NAMES.len()).map(move |j| (i, j)));
+    pairs
+        .map(|(i, j)| (i, j, known.correlation[i][j]))
+        .filter(|(.., correlation)| correlation.abs() >= 0.9)
+        .map(|(i, j, correlation)| format!("{} and {} {}", NAMES[i], NAMES[j], minus(&format!("{correlation:.3}"))))
+        .collect()
+}
+
+fn minima(section: &Section) -> Markup {
+    let minima = &section.survey.minima;
+    let terms = section.report.options.terms;
+    html! {
+        table {
+            caption {
+                "Distinct minima of " (section.starts) " fits from uniform starts: " (minima.len()) ", improvement potential "
+                (format!("{:.2} %", 100.0 * section.survey.improvement_potential)) "."
+                @if minima.len() > MINIMA { " The best " (MINIMA) " are listed." }
+            }
+            thead { tr {
+                th { "#" } th { "MSE" sup { "2" } }
+                @for name in NAMES { th { (symbol(name)) } }
+                th { "hits" } th { "first start" }
+            } }
+            tbody {
+                @for (place, minimum) in minima.iter().take(MINIMA).enumerate() { tr {
+                    td { (place + 1) } td { (number(minimum.mse2)) }
+                    @for (index, value) in minimum.params.to_array().into_iter().enumerate() {
+                        td { @if has(terms, index) { (number(value)) } @else { "–" } }
+                    }
+                    td { (minimum.hits) } td { (minimum.first_start) }
+                } }
+            }
+        }
+    }
+}
+
+fn angles(section: &Section) -> Markup {
+    let report = &section.report;
+    let with_error = |value| minus(&shown(value).replace("+-", "±"));
+    html! {
+        table {
+            caption {
+                "At each angle of incidence, with standard errors; peak and width are those of the surface lobe in plane."
+                @if report.derived.len() > ANGLES { " The first " (ANGLES) " of " (report.derived.len()) " angles are listed." }
+            }
+            thead { tr {
+                th { (symbol("theta_i")) ", deg" } th { (symbol("rho_s")) " F" } th { (symbol("rho_v")) " F" }
+                th { "peak, sr" sup { "−1" } } th { "at, deg" } th { "width, deg" } th { "reflectance" }
+            } }
+            tbody {
+                @for at in report.derived.iter().take(ANGLES) { tr {
+                    td { (number(at.theta_i.to_degrees())) }
+                    td { (at.rho_s_f.map_or_else(|| "–".into(), with_error)) }
+                    td { (at.rho_v_f.map_or_else(|| "–".into(), with_error)) }
+                    td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
+                    td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
+                    td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(crate::derived::Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
+                    td { (with_error(at.reflectance)) @if at.reflectance.value > 1.0 { " (above 1)" } }
+                } }
+            }
+        }
+    }
+}
+
+/// What it takes to make this again.
+fn provenance(section: &Section, command: &str) -> Markup {
+    let (report, options) = (&section.report, &section.report.options);
+    let precision = match options.precision {
+        Precision::F64 => "f64",
+        Precision::F32 => "f32",
+    };
+    html! {
+        table.provenance {
+            caption { "Provenance. The command gives this page again, to the byte." }
+            tbody {
+                tr { th.text { "command" } td.text { code { (command) } } }
+                tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
+                tr { th.text { "input" } td.text { (report.file) ", " (section.source.bytes) " bytes" } }
+                tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
+                tr { th.text { "read as" } td.text { (report.read_as) } }
+                tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
+                tr { th.text { "search" } td.text { (method_name(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
+                tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } }
+                tr { th.text { "passes" } td.text { (report.outcome.evaluations.linearize) " with derivatives, " (report.outcome.evaluations.cost) " without" } }
+            }
+        }
+    }
+}
+
+/// A name such as rho_s as it is set.
+fn symbol(name: &str) -> Markup {
+    let (letter, index) = name.split_once('_').unwrap_or((name, ""));
+    let letter = match letter {
+        "rho" => "ρ",
+        "theta" => "θ",
+        "kappa" => "κ",
+        other => other,
+    };
+    html! { i { (letter) } @if !index.is_empty() { sub { (index) } } }
+}
+
+/// Five significant digits, with a power of ten where that is shorter.
+fn number(value: f64) -> Markup {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    let text = digits(rounded);
+    html! {
+        @match text.split_once('e') {
+            Some((mantissa, exponent)) => { (minus(mantissa)) " × 10" sup { (minus(exponent)) } },
+            None => { (minus(&text)) },
+        }
+    }
+}
+
+fn minus(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+/// A figure as a part of the page: it needs no name space there, and its clipping has a name of its own.
+fn inline(svg: &str, key: &str) -> String {
+    svg.replace(" xmlns=\"http://www.w3.org/2000/svg\"", " role=\"img\"")
+        .replace("id=\"a\"", &format!("id=\"clip{key}\""))
+        .replace("url(#a)", &format!("url(#clip{key})"))
+}

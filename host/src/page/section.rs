@@ -1,0 +1,110 @@
+//! One scan: its fit, the fits from all starts, and what is drawn of both.
+
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::Sample;
+
+use super::provenance::Source;
+use crate::derived::{self, Value};
+use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
+use crate::error::Error;
+use crate::fit::fit;
+use crate::input::{self, Measurement};
+use crate::plot;
+use crate::report::Report;
+use crate::robust;
+
+/// The albedo is drawn up to this angle of incidence, degrees, in steps of two.
+const STEEPEST: u32 = 88;
+
+/// All that the page says of one scan.
+pub struct Section {
+    /// File and name of the scan.
+    pub label: String,
+    /// Its file.
+    pub source: Source,
+    /// The fit.
+    pub report: Report,
+    /// The paper's method on the same samples: distinct minima and where all starts ended.
+    pub survey: Outcome,
+    /// The number of its starts.
+    pub starts: u32,
+    /// The figures, each with what stands below it.
+    pub figures: Vec<(String, &'static str)>,
+}
+
+impl Section {
+    /// Fits a scan by `options`, and by the paper's method if that is another.
+    ///
+    /// # Errors
+    /// The scan can not be fitted.
+    pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
+        let report = fit(measurement, options)?;
+        let samples = robust::kept(&measurement.samples, &report.outcome);
+        let paper = FitOptions {
+            method: Method::Paper,
+            starts: None,
+            robust: false,
+            ..report.options
+        };
+        let (survey, starts) = if report.options.method == Method::Paper {
+            (report.outcome.clone(), report.options.starts())
+        } else {
+            let survey = engine::fit(&samples, &paper);
+            (
+                survey.map_err(|error| input::explain(measurement, error))?,
+                paper.starts(),
+            )
+        };
+        Ok(Section {
+            label: measurement.label(),
+            source: source.clone(),
+            figures: figures(&samples, &report, &survey.minima, starts),
+            report,
+            survey,
+            starts,
+        })
+    }
+
+    /// Do the starts of the survey end lower than the fit, by more than rounding?
+    pub fn missed(&self) -> bool {
+        let least = self.survey.minima.first().map_or(f64::INFINITY, |minimum| minimum.mse2);
+        least < self.report.outcome.mse2 * (1.0 - 1e-6)
+    }
+}
+
+fn figures(samples: &[Sample<f64>], report: &Report, minima: &[Minimum], starts: u32) -> Vec<(String, &'static str)> {
+    let outcome = &report.outcome;
+    let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
+    let others = minima.iter().filter(other).map(|minimum| minimum.params);
+    let curves: Vec<Params<f64>> = std::iter::once(outcome.params).chain(others).collect();
+    let albedo = |theta_i: f64| derived::at(theta_i, &outcome.params, &outcome.uncertainty).reflectance;
+    let angles = (0..=STEEPEST).step_by(2).map(f64::from);
+    let line: Vec<(f64, Value)> = angles.map(|degrees| (degrees, albedo(degrees.to_radians()))).collect();
+    let measured = report
+        .derived
+        .iter()
+        .map(|at| (at.theta_i.to_degrees(), at.reflectance));
+    let measured: Vec<(f64, Value)> = measured.collect();
+    vec![
+        (
+            plot::scan_svg("", samples, &curves),
+            "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+        ),
+        (
+            plot::residuals_svg(samples, &outcome.params, outcome.uncertainty.scale),
+            "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
+        ),
+        (
+            plot::polar_svg(samples, &outcome.params),
+            "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
+        ),
+        (
+            plot::waterfall_svg(minima, starts),
+            "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
+        ),
+        (
+            plot::albedo_svg(&line, &measured),
+            "Directional-hemispherical reflectance (directional albedo) of the best fit, with one standard error; dots at the measured angles of incidence.",
+        ),
+    ]
+}

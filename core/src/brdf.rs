@@ -1,7 +1,8 @@
 //! The modified Cook-Torrance BRDF of Eq. 14, as ln f with its gradient.
 
-use crate::fresnel::Index;
+use crate::fresnel::{Fresnel, Index};
 use crate::geometry::{Block, Geometry, SURFACE_LOBE, VOLUME_LOBE};
+use crate::pack::Pack;
 use crate::real::Real;
 
 /// Lambertian term `rho_d / pi`.
@@ -86,6 +87,7 @@ pub struct Brdf<R, const TERMS: u8> {
     /// Of the surface and the volume lobe.
     rho: [R; 2],
     inverse_m: R,
+    inverse_m2: R,
     index: Index<R>,
     /// No diffuse term keeps the lobes from underflow.
     faint: bool,
@@ -95,11 +97,24 @@ pub struct Brdf<R, const TERMS: u8> {
     lift_limit: R,
 }
 
-/// ln f of a block, with its derivatives.
-pub(crate) struct Rows<R, const L: usize> {
-    pub ln_f: [R; L],
+/// ln f of `G` lanes of a block, with its derivatives.
+pub(crate) struct Rows<R, const G: usize> {
+    pub ln_f: Pack<R, G>,
     /// In the order of [`NAMES`], the last by kappa^2; multiplied by the block's weights.
-    pub gradient: [[R; L]; 6],
+    pub gradient: [Pack<R, G>; 6],
+}
+
+/// What keeps the lobes of a block from underflow.
+pub(crate) struct Lift<R, const L: usize> {
+    /// Taken out of the exponents.
+    shift: [R; L],
+    /// exp(-shift), within limits.
+    lift: [R; L],
+}
+
+/// Number of lobes of `terms`.
+pub(crate) const fn lobes(terms: u8) -> usize {
+    (terms & (SURFACE | VOLUME)).count_ones() as usize
 }
 
 impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
@@ -132,12 +147,14 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         let kappa2 = when(has(TERMS, 5), params.kappa);
         let index = Index::new(params.n, kappa2);
         let shines = |rho: R| rho > R::TINY && !index.is_vacuum();
+        let inverse_m = R::ONE / params.m;
         let shining = [shines(rho[0]), shines(rho[1])];
         let ln_rho_d = if rho_d > R::TINY { rho_d.ln() } else { -R::MAX };
         Brdf {
             rho_d_pi: rho_d / R::PI,
             rho,
-            inverse_m: R::ONE / params.m,
+            inverse_m,
+            inverse_m2: inverse_m * inverse_m,
             index,
             faint: !(rho_d > R::FAINT) && (shining[0] || shining[1]),
             shining,
@@ -146,123 +163,154 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         }
     }
 
-    /// ln f of every lane, and if `GRADIENT` its derivatives.
-    ///
-    /// With E = exp(-tan^2 theta_h / m^2), f = rho_d/pi + sum over lobes of rho F factor E / m^2.
-    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
+    /// Where no diffuse term keeps the lobes from underflow, the largest exponent of each lane.
     #[inline(always)]
-    pub(crate) fn rows<const L: usize, const GRADIENT: bool>(&self, block: &Block<R, L>) -> Rows<R, L> {
-        let (zero, one, two) = (R::ZERO, R::ONE, R::of(2.0));
-        let inverse_m2 = self.inverse_m * self.inverse_m;
-        let lobes = Self::FIRST_LOBE..Self::LAST_LOBE + 1;
-        let mut shift = [zero; L];
-        let mut lift = [one; L];
+    pub(crate) fn lift<const L: usize>(&self, block: &Block<R, L>) -> Lift<R, L> {
+        let mut shift = [R::ZERO; L];
+        let mut lift = [R::ONE; L];
         if self.faint {
             for lane in 0..L {
                 let mut brightest = self.ln_rho_d;
-                for lobe in lobes.clone() {
-                    let exponent = -block.tan2_theta_h[lobe][lane] * inverse_m2;
+                for lobe in Self::FIRST_LOBE..Self::LAST_LOBE + 1 {
+                    let exponent = -block.tan2_theta_h[lobe][lane] * self.inverse_m2;
                     brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
                 }
                 shift[lane] = brightest;
                 lift[lane] = (-brightest).min(self.lift_limit).exp();
             }
         }
-        // beam = factor E / m^2, for both lobes; then F in its stages.
-        let mut beam = [[zero; L]; 2];
-        for lobe in lobes.clone() {
-            for lane in 0..L {
-                let exponent = (-block.tan2_theta_h[lobe][lane] * inverse_m2 - shift[lane]).min(R::LIFT);
-                let beckmann = if exponent < R::CUT { zero } else { exponent.exp() };
-                beam[lobe][lane] = block.factor[lobe][lane] * inverse_m2 * beckmann;
-            }
-        }
-        let fresnel = self.index.lanes::<2, L, GRADIENT>(&block.cos_theta_d, lobes.clone());
+        Lift { shift, lift }
+    }
+
+    /// One number of each lobe and lane: lobe by lobe, the `G` lanes of [`Pack::gather`].
+    #[inline(always)]
+    fn facets<const K: usize, const G: usize, const L: usize>(rows: &[[R; L]; 2], lane: usize) -> Pack<R, K> {
+        Pack(core::array::from_fn(|k| {
+            rows[Self::FIRST_LOBE + k / G][lane + k % G * (L / G)]
+        }))
+    }
+
+    /// factor E / m^2 and F of each lobe and lane, with E = exp(-tan^2 theta_h / m^2 - shift).
+    #[inline(always)]
+    fn beams<const K: usize, const G: usize, const L: usize, const GRADIENT: bool>(
+        &self,
+        block: &Block<R, L>,
+        shift: Pack<R, G>,
+        lane: usize,
+    ) -> (Pack<R, K>, Fresnel<R, K>) {
+        let shift = Pack::<R, K>(core::array::from_fn(|k| shift.0[k % G]));
+        let exponent = Self::facets::<K, G, L>(&block.tan2_theta_h, lane) * -self.inverse_m2 - shift;
+        let exponent = exponent.map(|x| x.min(R::LIFT));
+        let beckmann = exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e });
+        let beam = Self::facets::<K, G, L>(&block.factor, lane) * self.inverse_m2 * beckmann;
+        let cos_theta_d = Self::facets::<K, G, L>(&block.cos_theta_d, lane);
+        (beam, self.index.reflect::<K, GRADIENT>(cos_theta_d))
+    }
+
+    /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives; `K` is `G` times the number of lobes.
+    ///
+    /// With E = exp(-tan^2 theta_h / m^2), f = rho_d/pi + sum over lobes of rho F factor E / m^2.
+    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
+    #[inline(always)]
+    pub(crate) fn rows<const K: usize, const G: usize, const L: usize, const GRADIENT: bool>(
+        &self,
+        block: &Block<R, L>,
+        lift: &Lift<R, L>,
+        lane: usize,
+    ) -> Rows<R, G> {
+        let shift = Pack::<R, G>::gather(&lift.shift, lane);
+        let lift = Pack::<R, G>::gather(&lift.lift, lane);
+        let rho = Pack::<R, K>(core::array::from_fn(|k| self.rho[Self::FIRST_LOBE + k / G]));
+        let (beam, fresnel) = self.beams::<K, G, L, GRADIENT>(block, shift, lane);
+        let d_rho = beam * fresnel.f;
+        let term = rho * d_rho;
+        let f = sum_lobes(lift * self.rho_d_pi, term).map(|f| f.max(R::TINY));
+        let zero = Pack::splat(R::ZERO);
         let mut rows = Rows {
-            ln_f: [zero; L],
-            gradient: [[zero; L]; 6],
+            ln_f: shift + f.ln(),
+            gradient: [zero; 6],
         };
-        for lane in 0..L {
-            let mut sum = self.rho_d_pi * lift[lane];
-            let (mut d_m, mut d_n, mut d_kappa2) = (zero, zero, zero);
-            for lobe in lobes.clone() {
-                let d_rho = beam[lobe][lane] * fresnel.f[lobe][lane];
-                let term = self.rho[lobe] * d_rho;
-                sum += term;
-                d_m += term * (block.tan2_theta_h[lobe][lane] * inverse_m2 - one);
-                let weighted = self.rho[lobe] * beam[lobe][lane];
-                d_n += weighted * fresnel.d_n[lobe][lane];
-                d_kappa2 += weighted * fresnel.d_kappa2[lobe][lane];
-                rows.gradient[1 + lobe][lane] = d_rho;
+        if GRADIENT {
+            let two = R::of(2.0);
+            let share = Pack::gather(&block.weight, lane) / f;
+            let weighted = rho * beam;
+            let slope = Self::facets::<K, G, L>(&block.tan2_theta_h, lane) * self.inverse_m2 - R::ONE;
+            rows.gradient[0] = lift * share * (R::ONE / R::PI);
+            for k in 0..K {
+                rows.gradient[1 + Self::FIRST_LOBE + k / G].0[k % G] = d_rho.0[k] * share.0[k % G];
             }
-            let sum = sum.max(R::TINY);
-            rows.ln_f[lane] = shift[lane] + sum.ln();
-            if GRADIENT {
-                let share = block.weight[lane] / sum;
-                rows.gradient[0][lane] = lift[lane] * (share / R::PI);
-                rows.gradient[1][lane] *= share;
-                rows.gradient[2][lane] *= share;
-                rows.gradient[3][lane] = d_m * share * (two * self.inverse_m);
-                rows.gradient[4][lane] = d_n * share;
-                rows.gradient[5][lane] = d_kappa2 * share;
-            }
+            rows.gradient[3] = sum_lobes(zero, term * slope) * share * (two * self.inverse_m);
+            rows.gradient[4] = sum_lobes(zero, weighted * fresnel.d_n2) * share * (two * self.index.n);
+            rows.gradient[5] = sum_lobes(zero, weighted * fresnel.d_kappa2) * share;
         }
         rows
     }
 
-    /// f / f_measured for unit rho_d, rho_s and rho_v, times the block's weights.
+    /// f / f_measured for unit rho_d, rho_s and rho_v, times the block's weights; lanes and `K` as in `rows`.
     #[inline(always)]
-    pub(crate) fn relative_columns<const L: usize>(&self, block: &Block<R, L>) -> [[R; L]; 3] {
-        let inverse_m2 = self.inverse_m * self.inverse_m;
-        let lobes = Self::FIRST_LOBE..Self::LAST_LOBE + 1;
-        let fresnel = self.index.lanes::<2, L, false>(&block.cos_theta_d, lobes.clone());
-        let mut columns = [[R::ZERO; L]; 3];
-        for lane in 0..L {
-            columns[0][lane] = block.weight[lane] * (-block.ln_f[lane]).exp() / R::PI;
-        }
-        for lobe in lobes {
-            for lane in 0..L {
-                let exponent = -block.tan2_theta_h[lobe][lane] * inverse_m2;
-                let beckmann = if exponent < R::CUT { R::ZERO } else { exponent.exp() };
-                let beam = block.factor[lobe][lane] * inverse_m2 * beckmann * fresnel.f[lobe][lane];
-                columns[1 + lobe][lane] = beam * (columns[0][lane] * R::PI);
-            }
+    pub(crate) fn relative_columns<const K: usize, const G: usize, const L: usize>(
+        &self,
+        block: &Block<R, L>,
+        lane: usize,
+    ) -> [Pack<R, G>; 3] {
+        let (beam, fresnel) = self.beams::<K, G, L, false>(block, Pack::splat(R::ZERO), lane);
+        let lobes = beam * fresnel.f;
+        let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
+        let mut columns = [unit * (R::ONE / R::PI); 3];
+        for k in 0..K {
+            columns[1 + Self::FIRST_LOBE + k / G].0[k % G] = lobes.0[k] * unit.0[k % G];
         }
         columns
     }
 
+    #[inline(always)]
+    fn single<const GRADIENT: bool>(&self, geometry: &Geometry<R>) -> Rows<R, 1> {
+        let mut block = Block::empty();
+        block.set_geometry(0, geometry);
+        block.weight = [R::ONE];
+        let lift = self.lift(&block);
+        match lobes(TERMS) {
+            0 => self.rows::<0, 1, 1, GRADIENT>(&block, &lift, 0),
+            1 => self.rows::<1, 1, 1, GRADIENT>(&block, &lift, 0),
+            _ => self.rows::<2, 1, 1, GRADIENT>(&block, &lift, 0),
+        }
+    }
+
     /// ln f, f in sr^-1; where f vanishes (all weights 0), ln of the smallest sum that counts.
     pub fn ln_f(&self, geometry: &Geometry<R>) -> R {
-        self.rows::<1, false>(&single(geometry)).ln_f[0]
+        self.single::<false>(geometry).ln_f.0[0]
     }
 
     /// ln f, and its derivatives by rho_d, rho_s, rho_v, m, n and kappa (0 for absent terms).
     pub fn gradient(&self, geometry: &Geometry<R>) -> (R, [R; 6]) {
-        let rows = self.rows::<1, true>(&single(geometry));
+        let rows = self.single::<true>(geometry);
         let mut gradient = [R::ZERO; 6];
         for (index, value) in gradient.iter_mut().enumerate() {
             if has(TERMS, index) {
-                *value = rows.gradient[index][0];
+                *value = rows.gradient[index].0[0];
             }
         }
         gradient[5] *= R::of(2.0) * self.index.kappa;
-        (rows.ln_f[0], gradient)
+        (rows.ln_f.0[0], gradient)
     }
 }
 
-fn single<R: Real>(geometry: &Geometry<R>) -> Block<R, 1> {
-    let mut block = Block::empty();
-    block.set_geometry(0, geometry);
-    block.weight = [R::ONE];
-    block
+/// Adds what belongs to each lane, lobe by lobe.
+#[inline(always)]
+fn sum_lobes<R: Real, const K: usize, const G: usize>(mut sum: Pack<R, G>, x: Pack<R, K>) -> Pack<R, G> {
+    for k in 0..K {
+        sum.0[k % G] += x.0[k];
+    }
+    sum
 }
 
 /// F, dF/dn and dF/dkappa of unpolarised light; `0 < cos_theta <= 1`, `n >= 1`, `kappa >= 0`, result 0 to 1.
 pub fn fresnel<R: Real>(cos_theta: R, n: R, kappa: R) -> (R, R, R) {
-    let fresnel = Index::new(n, kappa * kappa).lanes::<1, 1, true>(&[[cos_theta]], 0..1);
+    let fresnel = Index::new(n, kappa * kappa).reflect::<1, true>(Pack([cos_theta]));
+    let two = R::of(2.0);
     (
-        fresnel.f[0][0],
-        fresnel.d_n[0][0],
-        R::of(2.0) * kappa * fresnel.d_kappa2[0][0],
+        fresnel.f.0[0],
+        two * n * fresnel.d_n2.0[0],
+        two * kappa * fresnel.d_kappa2.0[0],
     )
 }

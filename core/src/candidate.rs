@@ -1,10 +1,11 @@
 //! Good starts for a scan: (m, n, kappa) spread evenly, and the weights that fit best there.
 
 use crate::boxqp;
-use crate::brdf::{Brdf, has, slot};
+use crate::brdf::{Brdf, has, lobes, slot};
+use crate::geometry::LANES;
 use crate::lm::Bounds;
 use crate::real::Real;
-use crate::residuals::{SUMS, Scan, accumulate, total};
+use crate::residuals::{GROUP, SUMS, Scan, accumulate, total};
 use crate::search::Scene;
 use crate::start;
 
@@ -49,7 +50,11 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
                 )
             };
         }
-        self.set_weights(&mut x, bounds);
+        match lobes(TERMS) {
+            0 => self.set_weights::<0>(&mut x, bounds),
+            1 => self.set_weights::<GROUP>(&mut x, bounds),
+            _ => self.set_weights::<{ 2 * GROUP }>(&mut x, bounds),
+        }
         bounds.clamp(x)
     }
 }
@@ -57,15 +62,25 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
 impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds; one pass.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn set_weights(&self, x: &mut [R; P], bounds: &Bounds<R, P>) {
+    fn set_weights<const K: usize>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut normal = [[[R::ZERO; SUMS]; 3]; 3];
         let mut gradient = [[R::ZERO; SUMS]; 3];
         for block in self.blocks() {
-            let columns = brdf.relative_columns(block);
+            let mut columns = [[[R::ZERO; SUMS]; GROUP]; 3];
+            let mut weight = [[R::ZERO; SUMS]; GROUP];
+            for lane in 0..SUMS {
+                let model = brdf.relative_columns::<K, GROUP, LANES>(block, lane);
+                for half in 0..GROUP {
+                    weight[half][lane] = block.weight[lane + half * SUMS];
+                    for i in 0..3 {
+                        columns[i][half][lane] = model[i].0[half];
+                    }
+                }
+            }
             for i in 0..3 {
                 if has(TERMS, i) {
-                    accumulate(&mut gradient[i], &columns[i], &block.weight);
+                    accumulate(&mut gradient[i], &columns[i], &weight);
                     for j in 0..=i {
                         if has(TERMS, j) {
                             accumulate(&mut normal[i][j], &columns[i], &columns[j]);

@@ -1,153 +1,99 @@
 //! Unpolarised Fresnel reflectance of a complex index n - i kappa, with its derivatives.
-//!
-//! The work is cut into three short stages, each made for all lanes before the next: a processor overlaps the lanes of a short stage, but can not look past the one long chain of the whole formula.
 
-use core::ops::Range;
-
+use crate::pack::Pack;
 use crate::real::Real;
 
 /// The index of refraction, and what follows from it alone.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Index<R> {
-    n: R,
+    pub n: R,
     pub kappa: R,
+    n2: R,
     kappa2: R,
-    inverse_kappa: R,
     /// Re eps - 1 = n^2 - kappa^2 - 1, without the cancellation at n = 1.
     delta: R,
-    /// -Im eps = 2 n kappa.
-    beta: R,
+    /// (Im eps)^2 = 4 n^2 kappa^2.
     beta2: R,
+    /// |eps - 1|^2.
+    contrast: R,
 }
 
-/// F and its derivatives, by lobe and lane; dF/d(kappa^2) rather than dF/dkappa, which is 0 at kappa = 0 and hides the way off that bound.
+/// F and its derivatives; dF/d(n^2) and dF/d(kappa^2) are the simplest, and dF/dkappa is 0 at kappa = 0, which hides the way off that bound.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fresnel<R, const K: usize, const L: usize> {
-    pub f: [[R; L]; K],
-    pub d_n: [[R; L]; K],
-    pub d_kappa2: [[R; L]; K],
+pub(crate) struct Fresnel<R, const K: usize> {
+    pub f: Pack<R, K>,
+    pub d_n2: Pack<R, K>,
+    pub d_kappa2: Pack<R, K>,
 }
 
 impl<R: Real> Index<R> {
     #[inline(always)]
     pub fn new(n: R, kappa2: R) -> Self {
-        let kappa = kappa2.sqrt();
-        let beta = R::of(2.0) * n * kappa;
+        let n2 = n * n;
+        let delta = (n - R::ONE) * (n + R::ONE) - kappa2;
+        let beta2 = R::of(4.0) * n2 * kappa2;
         Index {
             n,
-            kappa,
+            kappa: kappa2.sqrt(),
+            n2,
             kappa2,
-            inverse_kappa: R::ONE / kappa.max(R::MIN_POSITIVE),
-            delta: (n - R::ONE) * (n + R::ONE) - kappa2,
-            beta,
-            beta2: beta * beta,
+            delta,
+            beta2,
+            contrast: delta * delta + beta2,
         }
     }
 
     /// True if F = 0 in every direction.
     #[inline(always)]
     pub fn is_vacuum(&self) -> bool {
-        self.delta == R::ZERO && self.beta == R::ZERO
+        self.contrast == R::ZERO
     }
 
-    /// F at cos theta_d, `0 < cos_theta_d <= 1`, result 0 to 1, and if `GRADIENT` its derivatives.
+    /// F at c = cos theta_d, `0 < c <= 1`, result 0 to 1, and if `GRADIENT` its derivatives.
     ///
     /// r_s = (c - p)/(c + p) and r_p = r_s t with t = (p c - s^2)/(p c + s^2), where p = sqrt(eps - s^2) = a - i b; F = |r_s|^2 (1 + |t|^2)/2.
-    /// Written as r_s = ((c^2 - |p|^2) + 2 i b c) / |c + p|^2, with c^2 - |p|^2 from delta and beta, it keeps the relative accuracy of |r_s| when n -> 1 and kappa -> 0.
-    /// With h = N/p = dp/dN of the complex index N, conj(r_s) dr_s/dp = 2 c (delta + i beta) / |c + p|^4, and likewise for t.
+    /// Multiplied out, r_s = (1 - eps)/(c + p)^2 and t = (p^2 c^2 - s^4)/(p c + s^2)^2: so |r_s| keeps its relative accuracy when eps -> 1, and F = |eps - 1|^2 (v^2 + |p^2 c^2 - s^4|^2) / (2 u^2 v^2) with u = |c + p|^2 and v = |p c + s^2|^2.
+    /// With h = N/p = dp/dN of the complex index N = n - i kappa, conj(r_s) dr_s/dp = 2 c conj(eps - 1) / u^2, and likewise for t.
     #[inline(always)]
-    pub fn lanes<const K: usize, const L: usize, const GRADIENT: bool>(
-        &self,
-        cos_theta_d: &[[R; L]; K],
-        lobes: Range<usize>,
-    ) -> Fresnel<R, K, L> {
-        let zero = [[R::ZERO; L]; K];
+    pub fn reflect<const K: usize, const GRADIENT: bool>(&self, c: Pack<R, K>) -> Fresnel<R, K> {
         let (half, two) = (R::of(0.5), R::of(2.0));
+        let c2 = c * c;
+        let s2 = c2.map(|c2| R::ONE - c2);
         // p^2 = alpha - i beta, |p|^2 = q.
-        let (mut q, mut inverse_q) = (zero, zero);
-        for lobe in lobes.clone() {
-            for lane in 0..L {
-                let c = cos_theta_d[lobe][lane];
-                let alpha = self.delta + c * c;
-                let q2 = (alpha * alpha + self.beta2).max(R::TINY);
-                inverse_q[lobe][lane] = q2.rsqrt();
-                q[lobe][lane] = q2 * inverse_q[lobe][lane];
-            }
-        }
-        // The larger of a and b first, the other from a b = n kappa.
-        let (mut a, mut b, mut b_over_kappa) = (zero, zero, zero);
-        for lobe in lobes.clone() {
-            for lane in 0..L {
-                let c = cos_theta_d[lobe][lane];
-                let alpha = self.delta + c * c;
-                let larger2 = half * (q[lobe][lane] + alpha.abs());
-                let inverse_larger = larger2.rsqrt();
-                let larger = larger2 * inverse_larger;
-                let ratio = self.n * inverse_larger;
-                let smaller = self.kappa * ratio;
-                let dielectric = alpha >= R::ZERO;
-                a[lobe][lane] = if dielectric { larger } else { smaller };
-                b[lobe][lane] = if dielectric { smaller } else { larger };
-                b_over_kappa[lobe][lane] = if dielectric { ratio } else { larger * self.inverse_kappa };
-            }
-        }
-        let (mut inverse_u, mut inverse_v, mut q_less_c2) = (zero, zero, zero);
-        for lobe in lobes.clone() {
-            for lane in 0..L {
-                let c = cos_theta_d[lobe][lane];
-                let (a, b) = (a[lobe][lane], b[lobe][lane]);
-                let c2 = c * c;
-                let s2 = R::ONE - c2;
-                let u = (a + c) * (a + c) + b * b;
-                let v = (a * c + s2) * (a * c + s2) + (b * c) * (b * c);
-                let w = q[lobe][lane] + c2;
-                // One division for the three reciprocals.
-                let uv = u * v;
-                let triple = R::ONE / (uv * w);
-                let inverse_uv = triple * w;
-                inverse_u[lobe][lane] = inverse_uv * v;
-                inverse_v[lobe][lane] = inverse_uv * u;
-                // q - c^2 = (q^2 - c^4) / (q + c^2).
-                q_less_c2[lobe][lane] = (self.delta * (self.delta + two * c2) + self.beta2) * (triple * uv);
-            }
-        }
+        let alpha = c2 + self.delta;
+        let q2 = alpha * alpha + self.beta2;
+        let q = q2 * q2.rsqrt();
+        // Of a and b, the larger first, and a from it or from a b = n kappa.
+        let larger2 = (q + alpha.map(R::abs)) * half;
+        let n_kappa = self.n * self.kappa;
+        let times_larger = alpha.zip(larger2, |alpha, a2| if alpha >= R::ZERO { a2 } else { n_kappa });
+        let a = times_larger * larger2.rsqrt();
+        let two_ac = (a + a) * c;
+        let u = q + c2 + two_ac;
+        let v = q * c2 + s2 * (s2 + two_ac);
+        // p^2 c^2 - s^4 = x - i beta c^2.
+        let x = c2 * (self.delta + two) - R::ONE;
+        let inverse_uv = (u * v).map(|uv| R::ONE / uv);
+        let inverse_uv2 = inverse_uv * inverse_uv;
+        let share = (v * v + (x * x + c2 * c2 * self.beta2)) * inverse_uv2;
         let mut fresnel = Fresnel {
-            f: zero,
-            d_n: zero,
-            d_kappa2: zero,
+            f: share * (half * self.contrast),
+            d_n2: c,
+            d_kappa2: c,
         };
-        for lobe in lobes {
-            for lane in 0..L {
-                let c = cos_theta_d[lobe][lane];
-                let (inverse_u, inverse_v) = (inverse_u[lobe][lane], inverse_v[lobe][lane]);
-                let c2 = c * c;
-                let s2 = R::ONE - c2;
-                let two_bc = two * b[lobe][lane] * c;
-                let s_re = q_less_c2[lobe][lane] * inverse_u;
-                let s_im = two_bc * inverse_u;
-                let rs = s_re * s_re + s_im * s_im;
-                let t_re = (q[lobe][lane] * c2 - s2 * s2) * inverse_v;
-                let t_im = two_bc * s2 * inverse_v;
-                let half_one_t = half * (R::ONE + (t_re * t_re + t_im * t_im));
-                fresnel.f[lobe][lane] = rs * half_one_t;
-                if GRADIENT {
-                    // The imaginary part of h, and everything odd in kappa, is kept divided by kappa.
-                    let h_re = (self.n * a[lobe][lane] + self.kappa * b[lobe][lane]) * inverse_q[lobe][lane];
-                    let h_im = (self.n * b_over_kappa[lobe][lane] - a[lobe][lane]) * inverse_q[lobe][lane];
-                    let beta = two * self.n;
-                    let x_t = (self.delta + c2) * c2 - s2 * s2;
-                    let scale_s = two * c * inverse_u * inverse_u;
-                    let scale_t = two * c * s2 * inverse_v * inverse_v * (half * rs);
-                    let beta_h = self.kappa2 * (beta * h_im);
-                    let d_rs_n = two * scale_s * (self.delta * h_re - beta_h);
-                    let d_t_n = two * scale_t * (x_t * h_re - c2 * beta_h);
-                    let d_rs_kappa2 = scale_s * (self.delta * h_im + beta * h_re);
-                    let d_t_kappa2 = scale_t * (x_t * h_im + beta * c2 * h_re);
-                    fresnel.d_n[lobe][lane] = d_rs_n * half_one_t + d_t_n;
-                    fresnel.d_kappa2[lobe][lane] = d_rs_kappa2 * half_one_t + d_t_kappa2;
-                }
-            }
+        if GRADIENT {
+            // Re h / n = y / (a q) and Im h / kappa = z / (a q); what is odd in kappa is kept divided by it.
+            let a2 = a * a;
+            let y = a2 + self.kappa2;
+            let z = a2.map(|a2| self.n2 - a2);
+            let scale = c / (a * q);
+            let d_s = scale * share;
+            let d_t = scale * s2 * inverse_uv2 * self.contrast;
+            let re = d_s * self.delta + d_t * x;
+            let im = d_s + d_t * c2;
+            fresnel.d_n2 = y * re - z * im * (two * self.kappa2);
+            fresnel.d_kappa2 = z * re + y * im * (two * self.n2);
         }
         fresnel
     }

@@ -8,6 +8,7 @@
 //! | stage | type | file | paper |
 //! |---|---|---|---|
 //! | scalar type, elementary functions | [`real::Real`] | `real.rs` | |
+//! | numbers side by side | [`pack::Pack`] | `pack.rs` | |
 //! | sample -> geometry, observation -> block | [`geometry::Sample`], [`geometry::Observation`], [`geometry::Block`] | `geometry.rs` | Eq. 7, 9, 12, 13 |
 //! | F and its derivatives | `Index` | `fresnel.rs` | |
 //! | ln f and its gradient | [`brdf::Params`], [`brdf::Brdf`] | `brdf.rs` | Eq. 3-8, 11, 14 |
@@ -28,6 +29,7 @@ mod fresnel;
 pub mod geometry;
 pub mod lm;
 pub mod minima;
+pub mod pack;
 pub mod real;
 pub mod residuals;
 pub mod search;

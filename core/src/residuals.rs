@@ -1,9 +1,10 @@
 //! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of sixteen rows (Eq. 15-17).
 
-use crate::brdf::{Brdf, Params, has, parameters, slot};
+use crate::brdf::{Brdf, Params, has, lobes, parameters, slot};
 use crate::fresnel::Index;
 use crate::geometry::{Block, LANES};
 use crate::lm::{Bounds, Linearization, Problem};
+use crate::pack::Pack;
 use crate::real::Real;
 
 /// The blocks of one scan, for a model of `TERMS` with its `P` parameters.
@@ -14,7 +15,7 @@ use crate::real::Real;
 pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
     blocks: &'a [Block<R>],
     /// cos theta_d nearest to the peak of each lobe.
-    peaks: [[R; 1]; 2],
+    peaks: Pack<R, 2>,
     /// The least m that a few samples still see; dimensionless.
     pub(crate) finest: R,
 }
@@ -25,7 +26,7 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     /// The scan whose observations are in `blocks`.
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
-        let mut peaks = [[R::ONE]; 2];
+        let mut peaks = Pack::splat(R::ONE);
         let mut finest = R::MAX;
         for lobe in 0..2 {
             // The three smallest tan^2 theta_h.
@@ -35,7 +36,7 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
                     let mut tan2 = block.tan2_theta_h[lobe][lane];
                     if block.weight[lane] > R::ZERO {
                         if tan2 < nearest[0] {
-                            peaks[lobe] = [block.cos_theta_d[lobe][lane]];
+                            peaks.0[lobe] = block.cos_theta_d[lobe][lane];
                         }
                         for place in &mut nearest {
                             if tan2 < *place {
@@ -125,13 +126,19 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
 }
 
 /// Number of partial sums that run side by side.
-pub(crate) const SUMS: usize = LANES / 2;
+pub(crate) const SUMS: usize = 8;
+/// Lanes of a block for each of them, which go through the model's formulas side by side.
+pub(crate) const GROUP: usize = LANES / SUMS;
+
+/// Vector registers of 64 bytes are stored twice as fast where they do not straddle cache lines.
+#[repr(align(64))]
+struct Aligned<T>(T);
 
 /// Adds the products of two columns of a block to the partial sums: lane k and lane k + 8 go to sum k.
 #[inline(always)]
-pub(crate) fn accumulate<R: Real>(sums: &mut [R; SUMS], x: &[R; LANES], y: &[R; LANES]) {
+pub(crate) fn accumulate<R: Real>(sums: &mut [R; SUMS], x: &[[R; SUMS]; GROUP], y: &[[R; SUMS]; GROUP]) {
     for k in 0..SUMS {
-        sums[k] += x[k] * y[k] + x[k + SUMS] * y[k + SUMS];
+        sums[k] += x[0][k] * y[0][k] + x[1][k] * y[1][k];
     }
 }
 
@@ -144,14 +151,11 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
 impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn cost(&self, x: &[R; P]) -> R {
-        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
-        let mut squares = [R::ZERO; SUMS];
-        for block in self.blocks {
-            let model = brdf.rows::<LANES, false>(block);
-            let residual = residuals(block, &model.ln_f);
-            accumulate(&mut squares, &residual, &residual);
+        match lobes(TERMS) {
+            0 => self.cost_of::<0>(x),
+            1 => self.cost_of::<GROUP>(x),
+            _ => self.cost_of::<{ 2 * GROUP }>(x),
         }
-        total(&squares)
     }
 
     /// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
@@ -161,8 +165,8 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         }
         let (old, change, new) = (Self::expand(x), Self::expand(step), Self::expand(&to));
         let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
-        let from = Index::new(old.n, old.kappa).lanes::<2, 1, true>(&self.peaks, 0..2);
-        let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).lanes::<2, 1, false>(&self.peaks, 0..2);
+        let from = Index::new(old.n, old.kappa).reflect::<2, true>(self.peaks);
+        let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).reflect::<2, false>(self.peaks);
         let mut bent = to;
         for lobe in 0..2 {
             let (Some(rho), Some(&straight), Some(&before)) = (
@@ -172,10 +176,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             ) else {
                 continue;
             };
-            let d_f = from.d_n[lobe][0] * change.n + from.d_kappa2[lobe][0] * d_kappa2;
-            let amplitude = from.f[lobe][0] * straight + before * d_f;
-            if has(TERMS, 1 + lobe) && amplitude > R::ZERO && there.f[lobe][0] > R::TINY {
-                *rho = amplitude / there.f[lobe][0];
+            let d_f = from.d_n2.0[lobe] * (R::of(2.0) * old.n * change.n) + from.d_kappa2.0[lobe] * d_kappa2;
+            let amplitude = from.f.0[lobe] * straight + before * d_f;
+            if has(TERMS, 1 + lobe) && amplitude > R::ZERO && there.f.0[lobe] > R::TINY {
+                *rho = amplitude / there.f.0[lobe];
             }
         }
         bent
@@ -183,38 +187,69 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        match lobes(TERMS) {
+            0 => self.linearize_of::<0>(x),
+            1 => self.linearize_of::<GROUP>(x),
+            _ => self.linearize_of::<{ 2 * GROUP }>(x),
+        }
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn cost_of<const K: usize>(&self, x: &[R; P]) -> R {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut squares = [R::ZERO; SUMS];
-        let mut gradient = [[R::ZERO; SUMS]; P];
-        let mut hessian = [[[R::ZERO; SUMS]; P]; P];
         for block in self.blocks {
-            let model = brdf.rows::<LANES, true>(block);
-            let residual = residuals(block, &model.ln_f);
-            let mut rows = [[R::ZERO; LANES]; P];
-            for (index, derivative) in model.gradient.iter().enumerate() {
-                if has(TERMS, index)
-                    && let Some(row) = rows.get_mut(slot(TERMS, index))
-                {
-                    *row = *derivative;
+            let lift = brdf.lift(block);
+            for lane in 0..SUMS {
+                let model = brdf.rows::<K, GROUP, LANES, false>(block, &lift, lane);
+                let residual = residual(block, lane, model.ln_f);
+                squares[lane] += residual.0[0] * residual.0[0] + residual.0[1] * residual.0[1];
+            }
+        }
+        total(&squares)
+    }
+
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn linearize_of<const K: usize>(&self, x: &[R; P]) -> Linearization<R, P> {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let mut squares = Aligned([R::ZERO; SUMS]);
+        let mut gradient = Aligned([[R::ZERO; SUMS]; P]);
+        let mut hessian = Aligned([[[R::ZERO; SUMS]; P]; P]);
+        for block in self.blocks {
+            let lift = brdf.lift(block);
+            let mut residuals = Aligned([[R::ZERO; SUMS]; GROUP]);
+            let mut rows = Aligned([[[R::ZERO; SUMS]; GROUP]; P]);
+            for lane in 0..SUMS {
+                let model = brdf.rows::<K, GROUP, LANES, true>(block, &lift, lane);
+                let residual = residual(block, lane, model.ln_f);
+                for half in 0..GROUP {
+                    residuals.0[half][lane] = residual.0[half];
+                    for i in 0..6 {
+                        if has(TERMS, i) {
+                            rows.0[slot(TERMS, i)][half][lane] = model.gradient[i].0[half];
+                        }
+                    }
                 }
             }
-            accumulate(&mut squares, &residual, &residual);
+            accumulate(&mut squares.0, &residuals.0, &residuals.0);
             for i in 0..P {
-                accumulate(&mut gradient[i], &rows[i], &residual);
+                accumulate(&mut gradient.0[i], &rows.0[i], &residuals.0);
                 for j in 0..=i {
-                    accumulate(&mut hessian[i][j], &rows[i], &rows[j]);
+                    accumulate(&mut hessian.0[i][j], &rows.0[i], &rows.0[j]);
                 }
             }
         }
         let mut sums = Linearization {
-            cost: total(&squares),
+            cost: total(&squares.0),
             gradient: [R::ZERO; P],
             hessian: [[R::ZERO; P]; P],
         };
         for i in 0..P {
-            sums.gradient[i] = total(&gradient[i]);
+            sums.gradient[i] = total(&gradient.0[i]);
             for j in 0..=i {
-                let sum = total(&hessian[i][j]);
+                let sum = total(&hessian.0[i][j]);
                 sums.hessian[i][j] = sum;
                 sums.hessian[j][i] = sum;
             }
@@ -224,10 +259,6 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
 }
 
 #[inline(always)]
-fn residuals<R: Real>(block: &Block<R>, ln_f: &[R; LANES]) -> [R; LANES] {
-    let mut residual = [R::ZERO; LANES];
-    for lane in 0..LANES {
-        residual[lane] = (ln_f[lane] - block.ln_f[lane]) * block.weight[lane];
-    }
-    residual
+fn residual<R: Real>(block: &Block<R>, lane: usize, ln_f: Pack<R, GROUP>) -> Pack<R, GROUP> {
+    (ln_f - Pack::gather(&block.ln_f, lane)) * Pack::gather(&block.weight, lane)
 }

@@ -31,22 +31,22 @@ pub const NIST_MEDIAN_LRE_DEVIATION: f64 = 9.5;
 pub const MGH_COST: f64 = 1e-5;
 /// Largest cost where the minimum is 0; measured 1e-30.
 pub const MGH_ZERO: f64 = 1e-29;
-/// ln f against 60 digits, in epsilons of its natural scale (see tests/model.rs), f64; measured 2.04.
-pub const LN_F_F64: f64 = 2.5;
-/// Its six derivatives; measured 2.29.
-pub const GRADIENT_F64: f64 = 2.5;
-/// ln f, f32; measured 2.68.
-pub const LN_F_F32: f64 = 3.0;
-/// Its six derivatives, f32; measured 1.85.
-pub const GRADIENT_F32: f64 = 2.0;
-/// F against 60 digits, in epsilons of its natural scale, f64; measured 6.79.
-pub const FRESNEL_F64: f64 = 7.0;
-/// dF/dn and dF/dkappa; measured 4.19.
-pub const FRESNEL_GRADIENT_F64: f64 = 4.5;
-/// F, f32; measured 6.90.
-pub const FRESNEL_F32: f64 = 7.0;
-/// dF/dn and dF/dkappa, f32; measured 3.07.
-pub const FRESNEL_GRADIENT_F32: f64 = 3.5;
+/// ln f against 60 digits, in epsilons of its natural scale (see tests/model.rs), f64; measured 1.14.
+pub const LN_F_F64: f64 = 1.5;
+/// Its six derivatives; measured 1.50.
+pub const GRADIENT_F64: f64 = 2.0;
+/// ln f, f32; measured 0.93.
+pub const LN_F_F32: f64 = 1.0;
+/// Its six derivatives, f32; measured 1.41.
+pub const GRADIENT_F32: f64 = 1.5;
+/// F against 60 digits, in epsilons of its natural scale, f64; measured 4.50.
+pub const FRESNEL_F64: f64 = 5.0;
+/// dF/dn and dF/dkappa; measured 2.34.
+pub const FRESNEL_GRADIENT_F64: f64 = 2.5;
+/// F, f32; measured 4.50.
+pub const FRESNEL_F32: f64 = 5.0;
+/// dF/dn and dF/dkappa, f32; measured 2.03.
+pub const FRESNEL_GRADIENT_F32: f64 = 2.5;
 /// ln f less that of Eq. 14 as printed, on ordinary scenes, f64; measured 1.7e-14.
 pub const LITERAL_LN_F: f64 = 5e-14;
 /// p dlnf/dp less central differences over 2e-5 p, relative where above 1; measured 6.3e-10.

@@ -1,0 +1,78 @@
+//! Numbers that go through a formula side by side.
+
+use core::ops::{Add, Div, Mul, Sub};
+
+use crate::real::Real;
+
+/// `K` numbers; each operation is made for all of them before the next.
+///
+/// A processor looks only some hundred instructions ahead: the links of one long chain leave it idle, those of `K` chains in turn do not.
+#[derive(Clone, Copy, Debug)]
+pub struct Pack<R, const K: usize>(pub [R; K]);
+
+impl<R: Real, const K: usize> Pack<R, K> {
+    /// The same number everywhere.
+    #[inline(always)]
+    pub fn splat(x: R) -> Self {
+        Pack([x; K])
+    }
+    /// One of each `L / K` of a row, from `lane` on.
+    #[inline(always)]
+    pub fn gather<const L: usize>(row: &[R; L], lane: usize) -> Self {
+        Pack(core::array::from_fn(|k| row[lane + k * (L / K)]))
+    }
+    /// Exponentials: [`Real::exp_pack`].
+    #[inline(always)]
+    pub fn exp(self) -> Self {
+        R::exp_pack(self)
+    }
+    /// Natural logarithms: [`Real::ln_pack`].
+    #[inline(always)]
+    pub fn ln(self) -> Self {
+        R::ln_pack(self)
+    }
+    /// Reciprocals of the square roots: [`Real::rsqrt_pack`].
+    #[inline(always)]
+    pub fn rsqrt(self) -> Self {
+        R::rsqrt_pack(self)
+    }
+    /// One function of each.
+    #[inline(always)]
+    pub fn map(mut self, f: impl Fn(R) -> R) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
+    }
+    /// One function of each pair.
+    #[inline(always)]
+    pub fn zip(mut self, other: Self, f: impl Fn(R, R) -> R) -> Self {
+        for k in 0..K {
+            self.0[k] = f(self.0[k], other.0[k]);
+        }
+        self
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<R: Real, const K: usize> $trait for Pack<R, K> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, R::$method)
+            }
+        }
+        impl<R: Real, const K: usize> $trait<R> for Pack<R, K> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: R) -> Self {
+                self.map(|x| x.$method(other))
+            }
+        }
+    };
+}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);

@@ -22,7 +22,7 @@ fn search(criterion: &mut Criterion) {
             scan: Scan::<f64, ALL, 6>::new(&blocks),
             simd: Simd::best(),
         };
-        let start = scene.candidate(&bounds, 0, 0, None);
+        let start = scene.candidate(&bounds, 0, 0, None).x;
         let options = Options::default();
         group.bench_function("one LM fit", |b| {
             b.iter(|| lm::fit(&scene, &bounds, black_box(start), &options));

@@ -49,7 +49,7 @@ fn passes(file: &str) -> (u32, u32) {
     };
     let mut passes = Vec::new();
     for i in 0..20 {
-        let fit = lm::fit(&scene, &bounds, scene.candidate(&bounds, 0, i, None), &options);
+        let fit = lm::fit(&scene, &bounds, scene.candidate(&bounds, 0, i, None).x, &options);
         assert!(
             fit.stop.is_some_and(Stop::converged),
             "{file}, candidate {i}: {:?}",

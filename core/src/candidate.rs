@@ -6,13 +6,13 @@ use crate::geometry::LANES;
 use crate::lm::Bounds;
 use crate::real::Real;
 use crate::residuals::{GROUP, SUMS, Scan, accumulate, total};
-use crate::search::Scene;
+use crate::search::{Candidate, Scene};
 use crate::start;
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS, P> {
     /// Candidate `i`: m, n and kappa spread evenly over the logarithm of their ranges, then the weights that fit best.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         let mut x = bounds.lower;
         let u = start::even::<R, 3>(seed, i);
         if has(TERMS, 3) {
@@ -50,19 +50,22 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
                 )
             };
         }
-        match lobes(TERMS) {
+        let rank = match lobes(TERMS) {
             0 => self.set_weights::<0>(&mut x, bounds),
             1 => self.set_weights::<GROUP>(&mut x, bounds),
             _ => self.set_weights::<{ 2 * GROUP }>(&mut x, bounds),
+        };
+        Candidate {
+            x: bounds.clamp(x),
+            rank,
         }
-        bounds.clamp(x)
     }
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
-    /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds; one pass.
+    /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn set_weights<const K: usize>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) {
+    fn set_weights<const K: usize>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) -> R {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
         let mut normal = [[[R::ZERO; SUMS]; 3]; 3];
         let mut gradient = [[R::ZERO; SUMS]; 3];
@@ -112,11 +115,17 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
             }
         }
         let step = boxqp::minimize(&a, &g, &[R::ZERO; 3], &room);
+        let mut rank = R::ZERO;
         for i in 0..3 {
+            rank += step[i] * (g[i] + g[i]);
+            for j in 0..3 {
+                rank += step[i] * a[i][j] * step[j];
+            }
             if let Some(weight) = x.get_mut(slot(TERMS, i)).filter(|_| has(TERMS, i)) {
                 *weight = lower[i] + step[i];
             }
         }
+        rank
     }
 }
 

@@ -227,8 +227,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
                 for half in 0..GROUP {
                     residuals.0[half][lane] = residual.0[half];
                     for i in 0..6 {
-                        if has(TERMS, i) {
-                            rows.0[slot(TERMS, i)][half][lane] = model.gradient[i].0[half];
+                        if has(TERMS, i)
+                            && let Some(row) = rows.0.get_mut(slot(TERMS, i))
+                        {
+                            row[half][lane] = model.gradient[i].0[half];
                         }
                     }
                 }

@@ -39,15 +39,21 @@ pub const PAPER_STARTS: u32 = 250;
 pub const CANDIDATES: u32 = 384;
 
 /// Candidates of a round.
-const ROUND: u32 = 64;
+const ROUND: u32 = 32;
+/// Rounds that are made in any case.
+const ROUNDS: u32 = 2;
+/// How many of a round's candidates are tried by cost.
+const TRIED: usize = 16;
 /// How many of them go on, and until how many passes of a fit, stage by stage; the last converge.
-const STAGES: [(usize, u32); 3] = [(16, 3), (8, 6), (4, u32::MAX)];
+const STAGES: [(usize, u32); 3] = [(8, 3), (4, 6), (2, u32::MAX)];
 /// Candidates like the best minimum, in the last round.
 const VARIATIONS: u32 = 32;
+/// How many of them are tried by cost.
+const VARIATIONS_TRIED: usize = 12;
 /// Their stages.
 const VARIATION_STAGES: [(usize, u32); 2] = [(6, 5), (2, u32::MAX)];
 /// Most candidates that go on from a round.
-const KEPT: usize = 16;
+const KEPT: usize = 8;
 /// Independent fits that must have ended in the best minimum before the search stops.
 const ENOUGH_HITS: u32 = 2;
 /// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
@@ -55,12 +61,21 @@ const ROUGH: f64 = 1e-8;
 /// [`Options::max_passes`] of these fits.
 const ROUGH_PASSES: u32 = 100;
 
+/// A start worth a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate<R, const P: usize> {
+    /// The start.
+    pub x: [R; P],
+    /// The lower, the more promising: a sum of squares that came with the start for nothing.
+    pub rank: R,
+}
+
 /// A problem that can propose good starts.
 pub trait Scene<R, const P: usize>: Problem<R, P> {
     /// Candidate `i` of the sequence of `seed`; one pass as cheap as [`Problem::cost`].
     ///
     /// With `like`, only what decides between the minima near that point is varied.
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P];
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P>;
 }
 
 /// How many evaluations were made.
@@ -158,13 +173,15 @@ pub fn search<R: Real, const P: usize>(
         evaluations: Evaluations::default(),
     };
     let mut made = 0;
-    while made < candidates.max(1) && search.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS) {
+    while made < candidates.max(1)
+        && (made < ROUNDS * ROUND || search.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS))
+    {
         let end = made.saturating_add(ROUND).min(candidates.max(1));
-        search.round(made..end, None, &STAGES);
+        search.round(made..end, None, TRIED, &STAGES);
         made = end;
     }
     let like = search.best.map(|best| best.x);
-    search.round(0..VARIATIONS, like.as_ref(), &VARIATION_STAGES);
+    search.round(0..VARIATIONS, like.as_ref(), VARIATIONS_TRIED, &VARIATION_STAGES);
     let Search {
         best,
         mut minima,
@@ -192,15 +209,21 @@ struct Search<'a, R, S, const P: usize> {
 }
 
 impl<R: Real, S: Scene<R, P>, const P: usize> Search<'_, R, S, P> {
-    /// Candidates by cost, short fits of the best, convergence of the best of those.
-    fn round(&mut self, indices: Range<u32>, like: Option<&[R; P]>, stages: &[(usize, u32)]) {
+    /// Candidates by rank, the best of them by cost, short fits of the best of those, convergence of the best of these.
+    fn round(&mut self, indices: Range<u32>, like: Option<&[R; P]>, tried: usize, stages: &[(usize, u32)]) {
+        let mut ranked: Vec<(R, u32, [R; P]), TRIED> = Vec::new();
+        for i in indices {
+            let Candidate { x, rank } = self.scene.candidate(self.bounds, self.seed, u64::from(i), like);
+            self.evaluations.cost += 1;
+            minima::insert(&mut ranked, tried, (rank, i, x), |candidate| candidate.0);
+        }
         let mut candidates: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
         let keep = stages.first().map_or(KEPT, |stage| stage.0);
-        for i in indices {
-            let x = self.scene.candidate(self.bounds, self.seed, u64::from(i), like);
-            let cost = self.scene.cost(&x);
-            self.evaluations.cost += 2;
-            minima::insert(&mut candidates, keep, (cost, i, x), |candidate| candidate.0);
+        for (_, i, x) in ranked {
+            self.evaluations.cost += 1;
+            minima::insert(&mut candidates, keep, (self.scene.cost(&x), i, x), |candidate| {
+                candidate.0
+            });
         }
         let mut fits: Vec<(Fit<R, P>, u32), KEPT> = Vec::new();
         for &(_, i, x) in &candidates {

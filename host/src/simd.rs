@@ -3,7 +3,7 @@
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Candidate, Scene};
 use pulp::NullaryFnOnce;
 
 /// A set of vector instructions.
@@ -87,17 +87,17 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R
     }
 }
 
-struct Candidate<'a, R, const TERMS: u8, const P: usize>(
+struct Propose<'a, R, const TERMS: u8, const P: usize>(
     &'a Scan<'a, R, TERMS, P>,
     &'a Bounds<R, P>,
     u64,
     u64,
     Option<&'a [R; P]>,
 );
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Candidate<'_, R, TERMS, P> {
-    type Output = [R; P];
+impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, TERMS, P> {
+    type Output = Candidate<R, P>;
     #[inline(always)]
-    fn call(self) -> [R; P] {
+    fn call(self) -> Candidate<R, P> {
         self.0.candidate(self.1, self.2, self.3, self.4)
     }
 }
@@ -115,7 +115,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
-        self.simd.run(Candidate(&self.scan, bounds, seed, i, like))
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
+        self.simd.run(Propose(&self.scan, bounds, seed, i, like))
     }
 }

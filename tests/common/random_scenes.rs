@@ -133,7 +133,7 @@ pub fn brute(scene: &FastScan<f64, ALL, 6>, bounds: &Bounds<f64, 6>, starts: u64
         let x = if i % 3 == 0 {
             start::uniform(seed, i, bounds)
         } else {
-            scene.candidate(bounds, !seed, i, None)
+            scene.candidate(bounds, !seed, i, None).x
         };
         let mut fit = Fit::begin(scene, bounds, x, &options);
         fit.run(scene, bounds, &options, 25);

@@ -8,7 +8,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::{self, Evaluations, Scene};
+use brdfit_core::search::{self, Candidate, Evaluations, Scene};
 
 use crate::engine::{self, FitError, FitOptions, Method, Precision};
 use crate::simd::FastScan;
@@ -153,7 +153,7 @@ impl<S: Problem<R, P>, R: Real, const P: usize> Problem<R, P> for Watched<S, R, 
 }
 
 impl<S: Scene<R, P>, R: Real, const P: usize> Scene<R, P> for Watched<S, R, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> [R; P] {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.seen.borrow_mut().evaluations.cost += 1;
         self.scene.candidate(bounds, seed, i, like)
     }

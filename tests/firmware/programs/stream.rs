@@ -38,7 +38,7 @@ fn stream<R: Real>(out: &mut dyn Write) -> fmt::Result {
         }
         // Only the blocks that hold samples are evaluated.
         let scan = Scan::<R, ALL, P>::new(blocks.get(..row / LANES + 1).unwrap_or_default());
-        let candidate = scan.candidate(&bounds, 0, row as u64, None);
+        let candidate = scan.candidate(&bounds, 0, row as u64, None).x;
         let start = if scan.cost(&candidate) < scan.cost(&x) {
             candidate
         } else {

@@ -181,7 +181,7 @@ impl Real for f64 {
     // Between them y is cut to 26 bits, so that y^2 is exact and only one rounding enters the last step.
     #[inline(always)]
     fn rsqrt_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
-        let y = x.map(|x| f64::from_bits(0x5fe6_eb50_c7b5_37a9 - (x.to_bits() >> 1)));
+        let y = x.map(|x| f64::from_bits(0x5fe6_eb50_c7b5_37a9u64.wrapping_sub(x.to_bits() >> 1)));
         let z = x * y * y;
         let y = y
             * ((z * -2.1917203989790779458 + 2.1893328172360454196)
@@ -296,7 +296,7 @@ impl Real for f32 {
     // As for f64, with a minimax line to 8.8e-4 and a cut to 12 bits.
     #[inline(always)]
     fn rsqrt_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
-        let y = x.map(|x| f32::from_bits(0x5f37_59df - (x.to_bits() >> 1)));
+        let y = x.map(|x| f32::from_bits(0x5f37_59dfu32.wrapping_sub(x.to_bits() >> 1)));
         let y = y * ((x * y * y) * -0.50043799191205 + 1.501314720067811);
         let y = y.map(|y| f32::from_bits(y.to_bits() & !0x0fff));
         let h = (x * (y * y)).map(|z| 1.0 - z);

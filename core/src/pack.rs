@@ -8,6 +8,7 @@ use crate::real::Real;
 ///
 /// A processor looks only some hundred instructions ahead: the links of one long chain leave it idle, those of `K` chains in turn do not.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pack<R, const K: usize>(pub [R; K]);
 
 impl<R: Real, const K: usize> Pack<R, K> {

@@ -76,6 +76,7 @@ const ROUGH_PASSES: u32 = 100;
 
 /// A start worth a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Candidate<R, const P: usize> {
     /// The start.
     pub x: [R; P],

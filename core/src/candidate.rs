@@ -14,41 +14,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         let mut x = bounds.lower;
-        let u = start::even::<R, 3>(seed, i);
-        if has(TERMS, 3) {
-            let k = slot(TERMS, 3);
-            if let Some(like) = like {
-                x[k] = like[k];
-            } else {
-                x[k] = log_between(
-                    bounds.lower[k].max(self.finest).min(bounds.upper[k]),
-                    bounds.upper[k].min(R::of(3.0)).max(bounds.lower[k]),
-                    u[0],
-                );
-            }
-        }
-        if has(TERMS, 4) {
-            let k = slot(TERMS, 4);
-            x[k] = log_between(
-                bounds.lower[k],
-                bounds.upper[k].min(R::of(10.0)).max(bounds.lower[k]),
-                u[1],
-            );
-        }
-        if has(TERMS, 5) {
-            let k = slot(TERMS, 5);
-            // A third of them without absorption, the others with kappa from 0.03 to 10.
-            let third = R::of(1.0 / 3.0);
-            x[k] = if u[2] < third {
-                bounds.lower[k]
-            } else {
-                let u = (u[2] - third) * R::of(1.5);
-                log_between(
-                    bounds.lower[k].max(R::of(1e-3)),
-                    bounds.upper[k].min(R::of(100.0)).max(R::of(1e-3)),
-                    u,
-                )
-            };
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        spread(&mut x, bounds, seed, i, self.finest, [place(3), place(4), place(5)]);
+        if let (Some(m), Some(like)) = (place(3).and_then(|k| x.get_mut(k)), like) {
+            *m = Self::get(like, 3, R::ONE);
         }
         let rank = match lobes(TERMS) {
             0 => self.set_weights::<0>(&mut x, bounds),
@@ -92,45 +61,107 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
                 }
             }
         }
-        let mut a = [[R::ZERO; 3]; 3];
-        let mut g = [R::ZERO; 3];
-        let (mut lower, mut room) = ([R::ZERO; 3], [R::ZERO; 3]);
+        let sums = core::array::from_fn(|i| core::array::from_fn(|j| total(&normal[i.max(j)][i.min(j)])));
+        let within = |side: &[R; P]| core::array::from_fn(|i| Self::get(side, i, R::ZERO));
+        let present = core::array::from_fn(|i| has(TERMS, i));
+        let (best, rank) = box_least_squares::<R, 3>(
+            &sums,
+            &core::array::from_fn(|i| total(&gradient[i])),
+            present,
+            within(&bounds.lower),
+            within(&bounds.upper),
+        );
         for i in 0..3 {
-            a[i][i] = R::ONE;
-            if has(TERMS, i) {
-                lower[i] = Self::get(&bounds.lower, i, R::ZERO);
-                room[i] = Self::get(&bounds.upper, i, R::ZERO) - lower[i];
-                for j in 0..=i {
-                    a[i][j] = total(&normal[i][j]);
-                    a[j][i] = a[i][j];
-                }
-                a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
-                g[i] = -total(&gradient[i]);
-            }
-        }
-        // The box is seen from its lower corner.
-        for i in 0..3 {
-            for j in 0..3 {
-                g[i] += a[i][j] * lower[j];
-            }
-        }
-        let step = boxqp::minimize(&a, &g, &[R::ZERO; 3], &room);
-        let mut rank = R::ZERO;
-        for i in 0..3 {
-            rank += step[i] * (g[i] + g[i]);
-            for j in 0..3 {
-                rank += step[i] * a[i][j] * step[j];
-            }
             if let Some(weight) = x.get_mut(slot(TERMS, i)).filter(|_| has(TERMS, i)) {
-                *weight = lower[i] + step[i];
+                *weight = best[i];
             }
         }
         rank
     }
 }
 
+/// Sets m, n and kappa^2, at the given places, to point `i` of a sequence that fills the logarithms of their ranges evenly; `finest` is the least m that the scan sees.
+pub(crate) fn spread<R: Real, const P: usize>(
+    x: &mut [R; P],
+    bounds: &Bounds<R, P>,
+    seed: u64,
+    i: u64,
+    finest: R,
+    places: [Option<usize>; 3],
+) {
+    let u = start::even::<R, 3>(seed, i);
+    let [m, n, kappa2] = places.map(|place| place.filter(|&k| k < P));
+    if let Some(k) = m {
+        x[k] = log_between(
+            bounds.lower[k].max(finest).min(bounds.upper[k]),
+            bounds.upper[k].min(R::of(3.0)).max(bounds.lower[k]),
+            u[0],
+        );
+    }
+    if let Some(k) = n {
+        x[k] = log_between(
+            bounds.lower[k],
+            bounds.upper[k].min(R::of(10.0)).max(bounds.lower[k]),
+            u[1],
+        );
+    }
+    if let Some(k) = kappa2 {
+        // A third of them without absorption, the others with kappa from 0.03 to 10.
+        let third = R::of(1.0 / 3.0);
+        x[k] = if u[2] < third {
+            bounds.lower[k]
+        } else {
+            let u = (u[2] - third) * R::of(1.5);
+            log_between(
+                bounds.lower[k].max(R::of(1e-3)),
+                bounds.upper[k].min(R::of(100.0)).max(R::of(1e-3)),
+                u,
+            )
+        };
+    }
+}
+
+/// The weights within bounds that solve `normal weights = rhs` best, and their sum of squares, less what it is at the lower bounds; a weight that is not present is 0.
+pub(crate) fn box_least_squares<R: Real, const N: usize>(
+    normal: &[[R; N]; N],
+    rhs: &[R; N],
+    present: [bool; N],
+    lower: [R; N],
+    upper: [R; N],
+) -> ([R; N], R) {
+    let mut a = [[R::ZERO; N]; N];
+    let mut g = [R::ZERO; N];
+    let mut room = [R::ZERO; N];
+    for i in 0..N {
+        a[i][i] = R::ONE;
+        if present[i] {
+            room[i] = upper[i] - lower[i];
+            for j in 0..N {
+                a[i][j] = if present[j] { normal[i][j] } else { R::ZERO };
+            }
+            a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
+            g[i] = -rhs[i];
+        }
+    }
+    // The box is seen from its lower corner.
+    for i in 0..N {
+        for j in 0..N {
+            g[i] += a[i][j] * lower[j];
+        }
+    }
+    let step = boxqp::minimize(&a, &g, &[R::ZERO; N], &room);
+    let mut rank = R::ZERO;
+    for i in 0..N {
+        rank += step[i] * (g[i] + g[i]);
+        for j in 0..N {
+            rank += step[i] * a[i][j] * step[j];
+        }
+    }
+    (core::array::from_fn(|i| lower[i] + step[i]), rank)
+}
+
 /// Between two positive numbers, evenly in the logarithm.
-fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
+pub(crate) fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
     if !(lower < upper) {
         return lower;
     }

@@ -15,6 +15,8 @@
 //! | step within bounds | | `boxqp.rs` | |
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
 //! | residuals of a scan | [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
+//! | other pieces of Eq. 5 | [`lobes::Facets`], [`composed::Composed`] | `lobes.rs`, `composed.rs` | Eq. 5 |
+//! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
 //! | search | [`search::search`], [`search::paper`] | `search.rs` | section 3 |
@@ -25,9 +27,12 @@
 mod boxqp;
 pub mod brdf;
 mod candidate;
+pub mod composed;
 mod fresnel;
 pub mod geometry;
+pub mod joint;
 pub mod lm;
+pub mod lobes;
 pub mod minima;
 pub mod pack;
 pub mod real;

@@ -26,29 +26,14 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     /// The scan whose observations are in `blocks`.
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
-        let mut peaks = Pack::splat(R::ONE);
-        let mut finest = R::MAX;
-        for lobe in 0..2 {
-            // The three smallest tan^2 theta_h.
-            let mut nearest = [R::MAX; 3];
-            for block in blocks {
-                for lane in 0..LANES {
-                    let mut tan2 = block.tan2_theta_h[lobe][lane];
-                    if block.weight[lane] > R::ZERO {
-                        if tan2 < nearest[0] {
-                            peaks.0[lobe] = block.cos_theta_d[lobe][lane];
-                        }
-                        for place in &mut nearest {
-                            if tan2 < *place {
-                                core::mem::swap(place, &mut tan2);
-                            }
-                        }
-                    }
-                }
-            }
-            finest = finest.min(nearest[2]);
-        }
-        let finest = R::of(0.3) * finest.sqrt();
+        let rows = |lobe: usize| {
+            blocks.iter().flat_map(move |block| {
+                (0..LANES)
+                    .filter(|&lane| block.weight[lane] > R::ZERO)
+                    .map(move |lane| (block.tan2_theta_h[lobe][lane], block.cos_theta_d[lobe][lane]))
+            })
+        };
+        let (finest, peaks) = finest_slope([rows(0), rows(1)]);
         Scan { blocks, peaks, finest }
     }
 
@@ -158,31 +143,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         }
     }
 
-    /// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
-        if !has(TERMS, 4) {
-            return to;
-        }
-        let (old, change, new) = (Self::expand(x), Self::expand(step), Self::expand(&to));
-        let d_kappa2 = if has(TERMS, 5) { change.kappa } else { R::ZERO };
-        let from = Index::new(old.n, old.kappa).reflect::<2, true>(self.peaks);
-        let there = Index::new(new.n.max(R::ONE), new.kappa.max(R::ZERO)).reflect::<2, false>(self.peaks);
-        let mut bent = to;
-        for lobe in 0..2 {
-            let (Some(rho), Some(&straight), Some(&before)) = (
-                bent.get_mut(slot(TERMS, 1 + lobe)),
-                to.get(slot(TERMS, 1 + lobe)),
-                x.get(slot(TERMS, 1 + lobe)),
-            ) else {
-                continue;
-            };
-            let d_f = from.d_n2.0[lobe] * (R::of(2.0) * old.n * change.n) + from.d_kappa2.0[lobe] * d_kappa2;
-            let amplitude = from.f.0[lobe] * straight + before * d_f;
-            if has(TERMS, 1 + lobe) && amplitude > R::ZERO && there.f.0[lobe] > R::TINY {
-                *rho = amplitude / there.f.0[lobe];
-            }
-        }
-        bent
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        let weights = [(place(1), 0), (place(2), 1)];
+        bend(x, step, to, place(4), place(5), weights, self.peaks)
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -258,6 +222,64 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
         }
         sums
     }
+}
+
+/// The least m that a few samples still see, dimensionless, and cos theta_d nearest to the peak of each lobe; from (tan^2 theta_h, cos theta_d) of every sample.
+pub(crate) fn finest_slope<R: Real>(lobes: [impl Iterator<Item = (R, R)>; 2]) -> (R, Pack<R, 2>) {
+    let mut peaks = Pack::splat(R::ONE);
+    let mut finest = R::MAX;
+    for (lobe, rows) in lobes.into_iter().enumerate() {
+        // The three smallest tan^2 theta_h.
+        let mut nearest = [R::MAX; 3];
+        for (mut tan2, cos_theta_d) in rows {
+            if tan2 < nearest[0] {
+                peaks.0[lobe] = cos_theta_d;
+            }
+            for place in &mut nearest {
+                if tan2 < *place {
+                    core::mem::swap(place, &mut tan2);
+                }
+            }
+        }
+        finest = finest.min(nearest[2]);
+    }
+    (R::of(0.3) * finest.sqrt(), peaks)
+}
+
+/// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
+///
+/// `n`, `kappa2` and the weights are places of coordinates; each weight comes with the geometry of its lobe.
+pub(crate) fn bend<R: Real, const P: usize>(
+    x: &[R; P],
+    step: &[R; P],
+    to: [R; P],
+    n: Option<usize>,
+    kappa2: Option<usize>,
+    weights: impl IntoIterator<Item = (Option<usize>, usize)>,
+    peaks: Pack<R, 2>,
+) -> [R; P] {
+    let at = |x: &[R; P], place: Option<usize>, absent: R| place.and_then(|k| x.get(k).copied()).unwrap_or(absent);
+    if n.is_none() {
+        return to;
+    }
+    let old_n = at(x, n, R::ONE);
+    let from = Index::new(old_n, at(x, kappa2, R::ZERO)).reflect::<2, true>(peaks);
+    let there =
+        Index::new(at(&to, n, R::ONE).max(R::ONE), at(&to, kappa2, R::ZERO).max(R::ZERO)).reflect::<2, false>(peaks);
+    let d_n2 = R::of(2.0) * old_n * at(step, n, R::ZERO);
+    let d_kappa2 = at(step, kappa2, R::ZERO);
+    let mut bent = to;
+    for (place, lobe) in weights {
+        let Some(rho) = place.and_then(|k| bent.get_mut(k)) else {
+            continue;
+        };
+        let d_f = from.d_n2.0[lobe] * d_n2 + from.d_kappa2.0[lobe] * d_kappa2;
+        let amplitude = from.f.0[lobe] * at(&to, place, R::ZERO) + at(x, place, R::ZERO) * d_f;
+        if amplitude > R::ZERO && there.f.0[lobe] > R::TINY {
+            *rho = amplitude / there.f.0[lobe];
+        }
+    }
+    bent
 }
 
 #[inline(always)]

@@ -49,3 +49,30 @@ pub fn fresnel() -> Vec<([f64; 3], [f64; 3])> {
         .map(|cells| (numbers(&cells[0..3]), numbers(&cells[3..6])))
         .collect()
 }
+
+/// One row of `lobes.csv`.
+#[derive(Clone, Debug)]
+pub struct LobesRow {
+    pub distribution: String,
+    pub masking: String,
+    /// theta_i, theta_s, delta_phi in radians.
+    pub angles: [f64; 3],
+    /// In the order of [`brdfit_core::composed::NAMES`].
+    pub params: [f64; 9],
+    /// ln f, and its derivatives by the parameters.
+    pub values: [f64; 10],
+}
+
+/// `lobes.csv`.
+pub fn lobes() -> Vec<LobesRow> {
+    lines("lobes.csv")
+        .iter()
+        .map(|cells| LobesRow {
+            distribution: cells[0].clone(),
+            masking: cells[1].clone(),
+            angles: numbers(&cells[2..5]),
+            params: numbers(&cells[5..14]),
+            values: numbers(&cells[14..24]),
+        })
+        .collect()
+}

@@ -178,3 +178,18 @@ pub const ROBUST_SINGULARITY: f64 = 0.02;
 pub const ROBUST_RHO_D: f64 = 0.015;
 /// The same of m; measured 0.030.
 pub const ROBUST_M: f64 = 0.04;
+// Other lobes.
+
+/// ln f and its derivatives of models put together from other lobes against 60 digits, in epsilons, f64.
+pub const LOBES_F64: f64 = 100.0;
+/// The same in f32, of the largest of the ten.
+pub const LOBES_F32: f64 = 100.0;
+/// Relative difference of the sums of a composed Eq. 14 from those of `Scan`; measured 2.0e-15.
+pub const COMPOSED: f64 = 1e-14;
+/// Cost of the best fit of a model to its own data; rounding.
+pub const LOBES_FIT: f64 = 1e-28;
+
+// Several scans together.
+
+/// Relative distance of the gain in the error of m by three scans from the root of 3.
+pub const JOINT_GAIN: f64 = 0.05;

@@ -7,7 +7,7 @@ use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
-use crate::{converge, export, fit, page, paper, profile, shell, simulate, stability};
+use crate::{compare, converge, export, fit, joint, page, paper, profile, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -39,6 +39,8 @@ enum Command {
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
     Profile(profile::command::Arguments),
+    Compare(compare::Arguments),
+    Joint(joint::Arguments),
     Converge(converge::Arguments),
     Stability(stability::Arguments),
     Export(export::Arguments),
@@ -142,6 +144,8 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Profile(arguments) => profile::command::run(arguments, streams),
+        Command::Compare(arguments) => compare::run(arguments, streams),
+        Command::Joint(arguments) => joint::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),

@@ -7,6 +7,7 @@ mod curve;
 mod polar;
 mod profile;
 mod residuals;
+mod overlay;
 mod svg;
 mod waterfall;
 
@@ -22,9 +23,10 @@ pub use polar::polar_svg;
 pub use profile::profile_svg;
 pub use residuals::residuals_svg;
 pub use waterfall::waterfall_svg;
+pub use overlay::{Overlay, overlay_svg};
 
 use axis::Axis;
-use curve::{curve, mse2};
+use curve::{LnF, curve, eq_14, mse2};
 
 /// Panels at most; of more incident angles an even choice is drawn.
 const PANELS: usize = 12;
@@ -61,9 +63,31 @@ struct Panel {
 /// All panels share both ranges: the horizontal one is that of the data, the vertical one that of the data and of the best curve's peak, up to a decade above the data; lines that leave it are cut.
 /// Of very many only some are drawn (every k-th angle, every k-th sample, the best minima), and the picture says so; so the file stays below 100 kB.
 pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) -> String {
+    let drawn = &curves[..curves.len().min(1 + OTHERS)];
+    let lines: Vec<Line> = drawn
+        .iter()
+        .enumerate()
+        .map(|(place, params)| Line {
+            ln_f: eq_14(params),
+            style: if place == 0 { svg::THICK } else { svg::THIN }.to_string(),
+            true_to: if place == 0 { TRUE_TO } else { OTHERS_TRUE_TO },
+        })
+        .collect();
+    draw(title, samples, &lines, TOP, |out| legend(out, samples, curves))
+}
+
+/// A model's line over the data.
+struct Line<'a> {
+    ln_f: LnF<'a>,
+    style: String,
+    /// How far it may be from the model, pixels.
+    true_to: f64,
+}
+
+/// Panels with the lines, the first on top, and the data; `legend` writes into the `top` pixels above.
+fn draw(title: &str, samples: &[Sample<f64>], lines: &[Line], top: f64, legend: impl FnOnce(&mut String)) -> String {
     let all = panels(samples);
     let panels: Vec<&Panel> = all.iter().step_by(all.len().div_ceil(PANELS).max(1)).collect();
-    let drawn = &curves[..curves.len().min(1 + OTHERS)];
     let columns = match panels.len() {
         0 | 1 => 1,
         2 | 4 => 2,
@@ -73,9 +97,9 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
     let width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64;
     let height = [400.0, 270.0, 210.0][columns - 1];
     let x = Axis::angles(panels.iter().flat_map(|p| &p.points).map(|p| p.0), width);
-    let y = vertical_axis(&panels, curves.first(), &x, height);
+    let y = vertical_axis(&panels, lines.first(), &x, height);
 
-    let total = TOP + rows as f64 * (height + CAPTION) + BOTTOM;
+    let total = top + rows as f64 * (height + CAPTION) + BOTTOM;
     let mut out = String::new();
     svg::open(&mut out, WIDTH, total);
     svg::text(
@@ -85,7 +109,7 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
         "font-size=\"17\" font-weight=\"bold\"",
         &svg::escape(title),
     );
-    legend(&mut out, samples, curves);
+    legend(&mut out);
     let _ = write!(
         out,
         "<clipPath id=\"a\"><rect width=\"{width:.1}\" height=\"{height:.1}\"/></clipPath>"
@@ -94,18 +118,15 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
     left_out(&mut out, panels.len(), all.len(), stride);
     for (place, panel) in panels.iter().enumerate() {
         let left = LEFT + (place % columns) as f64 * (width + GAP);
-        let top = TOP + (place / columns) as f64 * (height + CAPTION) + CAPTION;
+        let top = top + (place / columns) as f64 * (height + CAPTION) + CAPTION;
         let _ = write!(out, "\n<g transform=\"translate({left:.1} {top:.1})\">");
         frame(&mut out, &x, &y, place % columns == 0, place + columns >= panels.len());
         let caption = format!("{} = {}°", svg::sub("θ", "i"), degrees(panel.theta_i));
         svg::text(&mut out, 0.0, -7.0, "", &caption);
         out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">");
-        let line = |params, tolerance| curve(params, panel.theta_i, &x, &y, tolerance);
-        for params in drawn.iter().skip(1).rev() {
-            svg::path(&mut out, svg::THIN, &line(params, OTHERS_TRUE_TO));
-        }
-        if let Some(best) = curves.first() {
-            svg::path(&mut out, svg::THICK, &line(best, TRUE_TO));
+        for line in lines.iter().rev() {
+            let points = curve(&line.ln_f, panel.theta_i, &x, &y, line.true_to);
+            svg::path(&mut out, &line.style, &points);
         }
         let points = panel.points.iter().step_by(stride);
         svg::dots(&mut out, points.map(|p| (x.pixel(p.0), y.pixel(p.1))));
@@ -114,7 +135,7 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
     let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
     let label = format!("scattering angle {} (degrees, positive forward)", svg::sub("θ", "s"));
     svg::text(&mut out, middle, total - 12.0, "text-anchor=\"middle\"", &label);
-    let centre = 0.5 * (TOP + CAPTION + total - BOTTOM);
+    let centre = 0.5 * (top + CAPTION + total - BOTTOM);
     let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
     svg::text(&mut out, 18.0, centre, &turned, &format!("BRDF (sr{})", svg::sup("−1")));
     out.push_str("\n</svg>\n");
@@ -138,11 +159,11 @@ fn panels(samples: &[Sample<f64>]) -> Vec<Panel> {
 }
 
 /// The range of the data, with the best curve's peak.
-fn vertical_axis(panels: &[&Panel], best: Option<&Params<f64>>, x: &Axis, height: f64) -> Axis {
+fn vertical_axis(panels: &[&Panel], best: Option<&Line>, x: &Axis, height: f64) -> Axis {
     let data = panels.iter().flat_map(|p| &p.points).map(|p| p.1);
     let highest = data.clone().fold(f64::NEG_INFINITY, f64::max);
     let peaks = best.into_iter().flat_map(|best| {
-        let peak = |p: &&Panel| curve::peak(best, p.theta_i, x).min(highest + 1.0).max(highest);
+        let peak = |p: &&Panel| curve::peak(&best.ln_f, p.theta_i, x).min(highest + 1.0).max(highest);
         panels.iter().map(peak).collect::<Vec<_>>()
     });
     Axis::logarithm(data.chain(peaks), height)
@@ -195,10 +216,10 @@ fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>]) {
     let mut entries = vec![(measured, 0)];
     if let Some((best, others)) = curves.split_first() {
         let mse = format!("MSE{}", svg::sup("2"));
-        let error = svg::number(mse2(best, samples));
+        let error = svg::number(mse2(&eq_14(best), samples));
         entries.push((format!("best fit, {mse} = {error}"), 1));
         if let Some(worst) = others.last() {
-            let error = svg::number(mse2(worst, samples));
+            let error = svg::number(mse2(&eq_14(worst), samples));
             let kind = if others.len() == 1 { "minimum" } else { "minima" };
             let range = if others.len() == 1 { "=" } else { "up to" };
             let drawn = match others.len() {
@@ -287,10 +308,10 @@ mod tests {
         let x = Axis::angles([-85.0, 85.0].into_iter(), 800.0);
         let y = Axis::logarithm([-2.0, 4.0].into_iter(), 400.0);
         for m in [1e-5, 0.005] {
-            let peak = curve::peak(&params(m), 30f64.to_radians(), &x);
-            let at = |theta_s: f64| curve::peak(&params(m), theta_s.to_radians(), &x);
+            let peak = curve::peak(&eq_14(&params(m)), 30f64.to_radians(), &x);
+            let at = |theta_s: f64| curve::peak(&eq_14(&params(m)), theta_s.to_radians(), &x);
             assert!(peak > 2.0 && (peak - at(30.0)).abs() < 1e-12);
-            let line = curve(&params(0.005), 30f64.to_radians(), &x, &y, TRUE_TO);
+            let line = curve(&eq_14(&params(0.005)), 30f64.to_radians(), &x, &y, TRUE_TO);
             let top = line.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
             assert!((top.0 - x.pixel(30.0)).abs() < 0.5);
         }

@@ -3,16 +3,28 @@
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
-use std::f64::consts::{LOG10_E, PI};
+use std::f64::consts::LOG10_E;
 
 use super::axis::Axis;
 
 /// Lines go this far out of the panel, pixels.
 const OUTSIDE: f64 = 8.0;
 
+/// ln f of a model in the directions of a sample, f in sr^-1; none beyond the horizon.
+pub type LnF<'a> = Box<dyn Fn(&Sample<f64>) -> Option<f64> + 'a>;
+
+/// The model of the paper.
+pub fn eq_14(params: &Params<f64>) -> LnF<'static> {
+    let model = Brdf::<f64, ALL>::new(params);
+    Box::new(move |sample| {
+        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
+        Some(model.ln_f(&geometry))
+    })
+}
+
 /// The in-plane model over the whole horizontal axis, in pixels, true to `tolerance` pixels.
-pub fn curve(params: &Params<f64>, theta_i: f64, x: &Axis, y: &Axis, tolerance: f64) -> Vec<(f64, f64)> {
-    let model = values(params, theta_i, x);
+pub fn curve(ln_f: &LnF, theta_i: f64, x: &Axis, y: &Axis, tolerance: f64) -> Vec<(f64, f64)> {
+    let model = values(ln_f, theta_i, x);
     let visible = |at: f64| y.pixel(at).clamp(-OUTSIDE, y.pixels() + OUTSIDE);
     let points: Vec<_> = model
         .map(|(theta_s, log10)| (x.pixel(theta_s), visible(log10)))
@@ -21,29 +33,26 @@ pub fn curve(params: &Params<f64>, theta_i: f64, x: &Axis, y: &Axis, tolerance: 
 }
 
 /// The largest log10 of the in-plane model over the horizontal axis.
-pub fn peak(params: &Params<f64>, theta_i: f64, x: &Axis) -> f64 {
-    values(params, theta_i, x).fold(f64::NEG_INFINITY, |peak, (_, log10)| peak.max(log10))
+pub fn peak(ln_f: &LnF, theta_i: f64, x: &Axis) -> f64 {
+    values(ln_f, theta_i, x).fold(f64::NEG_INFINITY, |peak, (_, log10)| peak.max(log10))
 }
 
 /// Eq. 17: the sum of squared residuals of ln f over the squared number of samples; invalid samples are left out.
-pub fn mse2(params: &Params<f64>, samples: &[Sample<f64>]) -> f64 {
-    let model = Brdf::<f64, ALL>::new(params);
+pub fn mse2(ln_f: &LnF, samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().filter_map(|sample| {
-        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-        let residual = sample.weight * (model.ln_f(&geometry) - Real::ln(sample.brdf));
+        let residual = sample.weight * (ln_f(sample)? - Real::ln(sample.brdf));
         Some(residual * residual)
     });
     squares.sum::<f64>() / (samples.len() * samples.len()) as f64
 }
 
 /// theta_s in degrees and log10 of the model there.
-fn values(params: &Params<f64>, theta_i: f64, x: &Axis) -> impl Iterator<Item = (f64, f64)> {
-    let model = Brdf::<f64, ALL>::new(params);
+fn values<'a>(ln_f: &'a LnF, theta_i: f64, x: &Axis) -> impl Iterator<Item = (f64, f64)> + 'a {
     angles(theta_i.to_degrees(), x.range())
         .into_iter()
         .filter_map(move |theta_s| {
-            let geometry = Geometry::new(theta_i, theta_s.to_radians(), PI).ok()?;
-            Some((theta_s, model.ln_f(&geometry) * LOG10_E))
+            let sample = Sample::in_plane(theta_i, theta_s.to_radians(), 1.0);
+            Some((theta_s, ln_f(&sample)? * LOG10_E))
         })
 }
 

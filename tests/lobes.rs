@@ -89,7 +89,7 @@ fn facets(samples: &[Sample<f64>]) -> Vec<Facets<f64>> {
 fn f<D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize>(x: &[f64; P], sample: &Sample<f64>) -> f64 {
     let mut value = 0.0;
     let facets = [Facets::new(std::slice::from_ref(sample)).expect("a valid sample")];
-    Composed::<f64, D, M, EXTRAS, P>::new(&facets).each(x, |ln_f, _| value = ln_f.exp());
+    Composed::<f64, D, M, EXTRAS, P>::new(&facets).each(x, |ln_f, _| value = Real::exp(ln_f));
     value
 }
 

@@ -246,8 +246,32 @@ pub(crate) fn finest_slope<R: Real>(lobes: [impl Iterator<Item = (R, R)>; 2]) ->
     (R::of(0.3) * finest.sqrt(), peaks)
 }
 
-/// Keeps rho F at the peak of each lobe where the linear model puts it: n and kappa change F, and hardly anything else that a scan sees.
+/// What is to be added to n + d n and kappa^2 + d kappa^2 so that Re 1/(n - i kappa) and (Im 1/(n - i kappa))^2 change by what they do to first order; nothing where that would make |n - i kappa| more than four times what it is.
 ///
+/// All of second order, and written so that nothing cancels.
+fn straighten<R: Real>([n, kappa2]: [R; 2], [d_n, d_kappa2]: [R; 2]) -> [R; 2] {
+    let (one, two, quarter) = (R::ONE, R::of(2.0), R::of(0.25));
+    let q = n * n + kappa2;
+    // Relative changes of q, of n, and of Re 1/(n - i kappa) = n/q; then the change of 1/q.
+    let u = (two * n * d_n + d_kappa2) / q;
+    let v = d_n / n;
+    let w = v - u;
+    let s = (n * w) * (n * w) / q;
+    let d = one - u + s;
+    if !(w > quarter - one && d > quarter * quarter && kappa2 + d_kappa2 >= two * kappa2 * u) {
+        return [R::ZERO; 2];
+    }
+    let e = u - s;
+    [
+        n * (u * v - s * (one + v)) / d,
+        (two * d_kappa2 * u - (kappa2 + d_kappa2) * (two * s + e * e)) / (d * d),
+    ]
+}
+
+/// Moves n and kappa where 1/(n - i kappa) goes straight, and then keeps rho F at the peak of each lobe where the linear model puts it.
+///
+/// F at large |n - i kappa| is a function of that inverse, nearly linear; in n and kappa the way there and back is long and curved.
+/// And n and kappa change F at the peak, and hardly anything else that a scan sees.
 /// `n`, `kappa2` and the weights are places of coordinates; each weight comes with the geometry of its lobe.
 pub(crate) fn bend<R: Real, const P: usize>(
     x: &[R; P],
@@ -262,13 +286,24 @@ pub(crate) fn bend<R: Real, const P: usize>(
     if n.is_none() {
         return to;
     }
-    let old_n = at(x, n, R::ONE);
-    let from = Index::new(old_n, at(x, kappa2, R::ZERO)).reflect::<2, true>(peaks);
-    let there =
-        Index::new(at(&to, n, R::ONE).max(R::ONE), at(&to, kappa2, R::ZERO).max(R::ZERO)).reflect::<2, false>(peaks);
-    let d_n2 = R::of(2.0) * old_n * at(step, n, R::ZERO);
-    let d_kappa2 = at(step, kappa2, R::ZERO);
+    let (old_n, old_kappa2) = (at(x, n, R::ONE), at(x, kappa2, R::ZERO));
+    let (d_n, d_kappa2) = (at(step, n, R::ZERO), at(step, kappa2, R::ZERO));
     let mut bent = to;
+    for (place, more) in [n, kappa2]
+        .into_iter()
+        .zip(straighten([old_n, old_kappa2], [d_n, d_kappa2]))
+    {
+        if let Some(value) = place.and_then(|k| bent.get_mut(k)) {
+            *value += more;
+        }
+    }
+    let from = Index::new(old_n, old_kappa2).reflect::<2, true>(peaks);
+    let (new_n, new_kappa2) = (
+        at(&bent, n, R::ONE).max(R::ONE),
+        at(&bent, kappa2, R::ZERO).max(R::ZERO),
+    );
+    let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
+    let d_n2 = R::of(2.0) * old_n * d_n;
     for (place, lobe) in weights {
         let Some(rho) = place.and_then(|k| bent.get_mut(k)) else {
             continue;

@@ -7,6 +7,7 @@
 
 use std::f64::consts::PI;
 
+use brdfit::engine::{self, FitOptions};
 use brdfit_core::brdf::{ALL, Brdf, DIFFUSE, Params, SURFACE, VOLUME};
 use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options, Problem, Stop, fit};
@@ -131,12 +132,14 @@ const PAPER: [f64; 6] = [0.1, 10.0, 0.01, 0.1, 3.0, 1.0];
 
 #[test]
 fn smoothest_and_roughest() {
+    let mut worst = 0.0f64;
     for m in [1e-5, 10.0] {
         let samples = simulated(0.8, 5, [0.1, 1.0, 0.5, m, 1.5, 0.2]);
         let (double, _) = both(&samples);
         println!("m = {m:e}: cost {double:e}");
-        assert!(double < tolerance::EXACT_F64);
+        worst = worst.max(double);
     }
+    check(worst, tolerance::SMOOTH_F64);
 }
 
 #[test]
@@ -160,25 +163,46 @@ fn derivative_by_the_smallest_m_at_grazing() {
     );
 }
 
+/// The corner of Table 1 is reached to the last bit, or else the dielectric whose F has nearly the same course: noise of 0.1 % hides which.
 #[test]
 fn metal_of_index_100() {
+    const SEARCHES: u32 = 20;
     let samples = simulated(0.5, 5, [0.1, 5.0, 0.5, 0.3, 100.0, 100.0]);
-    let (double, single) = both(&samples);
-    println!("n = kappa = 100: {double:e}, f32 {single:e}");
-    check(double.max(single), tolerance::METAL);
+    let (mut missed, mut exact, mut like) = (0, 0.0f64, 0.0f64);
+    for seed in 0..SEARCHES {
+        let options = FitOptions {
+            seed: seed.into(),
+            ..FitOptions::default()
+        };
+        let found = engine::fit(&samples, &options).expect("a valid scan");
+        if found.params.n > 50.0 {
+            exact = exact.max(found.cost);
+        } else {
+            missed += 1;
+            like = like.max(found.rms_ln);
+        }
+    }
+    println!("n = kappa = 100: cost {exact:e}, missed by {missed} with rms {like:e}");
+    check(exact, tolerance::METAL);
+    check(like, tolerance::METAL_LIKE);
+    check(f64::from(missed) / f64::from(SEARCHES), tolerance::METAL_MISSED);
+    both(&samples);
 }
 
 #[test]
 fn no_diffuse_term_and_every_lobe_underflows() {
     // Away from the peak of the smoothest surface ln f is -10^9 or so: right, finite, and fitted.
     let material = [0.0, 1.0, 1.0, 1e-5, 1.5, 0.1];
+    let mut worst = 0.0f64;
     for theta_s in [-0.6f64, -0.1, 0.1, 0.6] {
         let geometry = Geometry::new(0.3, theta_s, PI).expect("a valid pair of directions");
         let (ln_f, gradient) = Brdf::<f64, ALL>::new(&params(material)).gradient(&geometry);
         let nearer = geometry.surface().tan2_theta_h.min(geometry.volume().tan2_theta_h);
-        assert!((ln_f / (-nearer * 1e10) - 1.0).abs() < tolerance::NEEDLE, "{ln_f}");
+        worst = worst.max((ln_f / (-nearer * 1e10) - 1.0).abs());
         assert!(gradient.iter().all(|d| d.is_finite()));
     }
+    println!("needle: {worst:e}");
+    check(worst, tolerance::NEEDLE);
     let mut lower = LOWER;
     let mut upper = UPPER;
     (lower[0], upper[0]) = (0.0, 0.0);
@@ -194,17 +218,10 @@ fn no_diffuse_term_and_every_lobe_underflows() {
 #[test]
 fn one_sample_and_all_equal() {
     let one = [Sample::in_plane(0.5, 0.2, 0.03)];
-    let (double, single) = both(&one);
-    assert!(
-        double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32,
-        "{double:e} {single:e}"
-    );
     let equal = plane(0.5, 5, |_| 0.1 / PI);
-    let (double, single) = both(&equal);
-    assert!(
-        double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32,
-        "{double:e} {single:e}"
-    );
+    let ((double, single), (doubles, singles)) = (both(&one), both(&equal));
+    // To the last bit.
+    assert_eq!([double, single, doubles, singles], [0.0; 4]);
     let blocks = blocks::<f64>(&equal);
     let scan = Scan::<f64, DIFFUSE, 1>::new(&blocks);
     let bounds = Scan::<f64, DIFFUSE, 1>::bounds(&params(LOWER), &params(UPPER));
@@ -281,7 +298,8 @@ fn normal_incidence() {
     // Both lobes fall on one another: rho_s and rho_v can not be told apart, but the curve is fitted.
     let (double, single) = both(&samples);
     println!("theta_i = 0: {double:e}, f32 {single:e}");
-    assert!(double < tolerance::EXACT_F64 && single < tolerance::EXACT_F32);
+    check(double, tolerance::NORMAL_F64);
+    check(single, tolerance::NORMAL_F32);
 }
 
 prop_compose! {

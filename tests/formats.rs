@@ -154,6 +154,7 @@ fn texts() -> Vec<(&'static str, String)> {
 #[test]
 fn the_same_scan_in_every_format_gives_the_same_fit() {
     let folder = tempfile::tempdir().expect("a folder");
+    let mut worst = 0.0f64;
     for (format, text) in texts() {
         // The name says nothing.
         let file = write(&folder, "scan.dat", &text);
@@ -161,12 +162,13 @@ fn the_same_scan_in_every_format_gives_the_same_fit() {
         assert_eq!(found["input"]["format"], format);
         let error = error(&found);
         println!("{format}: {} samples, parameters to {error:.1e}", found["samples"]);
-        assert!(error < tolerance::FORMATS, "{format}: {error:e}");
+        worst = worst.max(error);
         assert_eq!(
             fit(&[&file, "--input-format", format])["parameters"],
             found["parameters"]
         );
     }
+    check(worst, tolerance::FORMATS);
 }
 
 #[test]
@@ -190,7 +192,7 @@ fn quantities_units_and_signs_are_what_the_options_say() {
         "--forward",
         "negative",
     ]);
-    assert!(error(&found) < tolerance::FORMATS, "{found}");
+    assert!(tolerance::FORMATS.admits(error(&found)), "{found}");
     let input = serde_json::json!({
         "format": "table", "angles": "rad", "quantity": "brf-cos", "forward": "negative", "weighted": false
     });
@@ -230,7 +232,7 @@ fn columns_are_fitted_as_scans_of_their_own() {
     };
     assert_eq!((&red["scan"], &green["scan"]), (&"R".into(), &"550 nm".into()));
     let half = green["parameters"]["rho_d"].as_f64().expect("a number") / TRUTH[0];
-    assert!((half - 0.5).abs() < 1e-6 && error(red) < tolerance::FORMATS);
+    assert!((half - 0.5).abs() < 1e-6 && tolerance::FORMATS.admits(error(red)));
     assert_eq!(fit(&[&file, "--column", "550nm"])["parameters"], green["parameters"]);
     let table = program::brdfit(&["fit", &file, "--format", "csv"], b"").output;
     assert!(table.starts_with("file,scan,samples,") && table.contains(",R,82,") && table.contains(",550 nm,82,"));

@@ -1,6 +1,6 @@
 //! The solver on NIST's certified nonlinear regression problems.
 
-use brdfit_core::lm::Options;
+use brdfit_core::lm::{Options, Stop};
 use brdfit_suite::nist_models::{options, run_all};
 use brdfit_suite::tolerance::{self, check_digits};
 
@@ -10,12 +10,11 @@ fn certified_parameters_from_both_starts() {
     assert_eq!(runs.len(), 54);
     for run in &runs {
         assert!(run.stop.converged(), "{run:?}");
-        assert!(run.lre >= tolerance::NIST_LEAST_LRE, "{run:?}");
     }
     let mut lre: Vec<f64> = runs.iter().map(|run| run.lre).collect();
     lre.sort_by(f64::total_cmp);
-    check_digits(lre[0], tolerance::NIST_LEAST_LRE);
-    check_digits(0.5 * (lre[26] + lre[27]), tolerance::NIST_MEDIAN_LRE);
+    check_digits(lre[0], tolerance::NIST_LARGEST);
+    check_digits(0.5 * (lre[26] + lre[27]), tolerance::NIST_MEDIAN);
 }
 
 /// Lanczos1 is a curve without noise: its certified deviations are those of the last digits of its data.
@@ -28,15 +27,32 @@ fn certified_standard_errors() {
         }
     }
     lre.sort_by(f64::total_cmp);
-    check_digits(lre[0], tolerance::NIST_LEAST_LRE_DEVIATION);
-    check_digits(lre[25], tolerance::NIST_MEDIAN_LRE_DEVIATION);
+    check_digits(lre[0], tolerance::NIST_DEVIATION);
+    check_digits(lre[25], tolerance::NIST_MEDIAN_DEVIATION);
 }
 
-/// The options of ordinary fits, from starts that are not absurd: more damping or more passes are not what makes the others right.
+/// What the options of ordinary fits miss, and how; all three from the farther start.
+const MISSED: [(&str, Stop); 3] = [
+    // 582 and 7695 passes along a valley, with any damping; 500 are allowed.
+    ("MGH17", Stop::Passes),
+    ("MGH10", Stop::Passes),
+    // The first step is too bold, and ends on a plateau.
+    ("BoxBOD", Stop::Cost),
+];
+
 #[test]
-fn default_options_from_the_nearer_start() {
-    for run in run_all(&Options::default()).iter().filter(|run| run.start == 2) {
+fn default_options_miss_three_far_starts() {
+    let mut least = f64::INFINITY;
+    for run in run_all(&Options::default()) {
+        if let Some(missed) = MISSED.iter().find(|missed| (missed.0, 1) == (run.name, run.start)) {
+            assert!(
+                run.lre < 1.0 && run.stop == missed.1,
+                "no longer missed as listed: {run:?}"
+            );
+            continue;
+        }
         assert!(run.stop.converged(), "{run:?}");
-        assert!(run.lre >= tolerance::NIST_DEFAULT_LRE, "{run:?}");
+        least = least.min(run.lre);
     }
+    check_digits(least, tolerance::NIST_DEFAULT);
 }

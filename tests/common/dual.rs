@@ -1,4 +1,4 @@
-//! Dual numbers: a value with its exact derivatives by `P` parameters, and least-squares problems written in them.
+//! Dual numbers: a value with its exact derivatives by `P` parameters, and least-squares problems written in them; the same bits everywhere.
 #![allow(clippy::suspicious_arithmetic_impl, reason = "the product and quotient rules")]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -31,34 +31,34 @@ impl<const P: usize> Dual<P> {
     }
 
     pub fn exp(self) -> Self {
-        let e = self.v.exp();
+        let e = libm::exp(self.v);
         self.chain(e, e)
     }
     /// 1 - e^x without cancellation.
     pub fn one_less_exp(self) -> Self {
-        self.chain(-self.v.exp_m1(), -self.v.exp())
+        self.chain(-libm::expm1(self.v), -libm::exp(self.v))
     }
     pub fn ln(self) -> Self {
-        self.chain(self.v.ln(), 1.0 / self.v)
+        self.chain(libm::log(self.v), 1.0 / self.v)
     }
     pub fn sqrt(self) -> Self {
         let root = self.v.sqrt();
         self.chain(root, 0.5 / root)
     }
     pub fn sin(self) -> Self {
-        self.chain(self.v.sin(), self.v.cos())
+        self.chain(libm::sin(self.v), libm::cos(self.v))
     }
     pub fn cos(self) -> Self {
-        self.chain(self.v.cos(), -self.v.sin())
+        self.chain(libm::cos(self.v), -libm::sin(self.v))
     }
     pub fn atan(self) -> Self {
-        self.chain(self.v.atan(), 1.0 / (1.0 + self.v * self.v))
+        self.chain(libm::atan(self.v), 1.0 / (1.0 + self.v * self.v))
     }
     pub fn square(self) -> Self {
         self.chain(self.v * self.v, 2.0 * self.v)
     }
     pub fn powf(self, p: f64) -> Self {
-        self.chain(self.v.powf(p), p * self.v.powf(p - 1.0))
+        self.chain(libm::pow(self.v, p), p * libm::pow(self.v, p - 1.0))
     }
     /// A positive base to a dual power.
     pub fn pow(self, power: Self) -> Self {

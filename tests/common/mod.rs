@@ -14,3 +14,4 @@ pub mod random_scenes;
 pub mod reference;
 pub mod scan;
 pub mod tolerance;
+pub mod valley;

@@ -9,19 +9,48 @@ use crate::dual::{Dual, LeastSquares};
 
 /// How one fit of one set ended.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct Run<S> {
     pub name: &'static str,
     /// Which certified start, 1 or 2.
     pub start: usize,
     pub parameters: usize,
+    /// Evaluations of the residuals.
     pub passes: u32,
-    pub stop: Stop,
+    pub stop: S,
     /// Least over the parameters of -log10 |b - certified| / |certified|, at most 11: the certified values have 11 digits.
     pub lre: f64,
     /// The same of the residual sum of squares.
     pub lre_cost: f64,
     /// The same of the standard errors of the parameters and of the residual standard deviation.
     pub lre_deviations: f64,
+}
+
+/// Residuals and their derivatives as a function of the parameters.
+pub type Residuals<'a, const P: usize> = &'a dyn Fn(&[Dual<P>; P]) -> Vec<Dual<P>>;
+
+/// Whatever finds a least sum of squares.
+pub trait Solver {
+    /// How it tells its end.
+    type Stop;
+    /// The parameters, the sum of squares there, the number of evaluations of the residuals, and how it ended.
+    fn solve<const P: usize>(&self, residuals: Residuals<P>, start: [f64; P]) -> ([f64; P], f64, u32, Self::Stop);
+}
+
+fn free<const P: usize>() -> Bounds<f64, P> {
+    Bounds {
+        lower: [-f64::MAX; P],
+        upper: [f64::MAX; P],
+    }
+}
+
+/// The core's solver, where each evaluation is one with derivatives.
+impl Solver for Options<f64> {
+    type Stop = Stop;
+    fn solve<const P: usize>(&self, residuals: Residuals<P>, start: [f64; P]) -> ([f64; P], f64, u32, Stop) {
+        let fit = fit(&LeastSquares(residuals), &free(), start, self);
+        let stop = fit.stop.expect("a fit that ran to its end has a stop");
+        (fit.x, fit.at.cost, fit.passes, stop)
+    }
 }
 
 struct Set<const P: usize> {
@@ -85,39 +114,35 @@ fn lre(value: f64, certified: f64) -> f64 {
     }
 }
 
-fn run<const P: usize>(
-    runs: &mut Vec<Run>,
-    options: &Options<f64>,
+fn run<S: Solver, const P: usize>(
+    runs: &mut Vec<Run<S::Stop>>,
+    solver: &S,
     name: &'static str,
     model: fn(&[f64], &[Dual<P>; P]) -> Dual<P>,
 ) {
     let set = read::<P>(name);
-    let bounds = Bounds {
-        lower: [-f64::MAX; P],
-        upper: [f64::MAX; P],
-    };
-    let problem = LeastSquares(|b: &[Dual<P>; P]| -> Vec<Dual<P>> {
+    let residuals = |b: &[Dual<P>; P]| -> Vec<Dual<P>> {
         set.rows
             .iter()
             .map(|row| {
-                let y = if name == "Nelson" { row[0].ln() } else { row[0] };
+                let y = if name == "Nelson" { libm::log(row[0]) } else { row[0] };
                 model(&row[1..], b) - y
             })
             .collect()
-    });
+    };
     for (i, start) in set.starts.iter().enumerate() {
-        let fit = fit(&problem, &bounds, *start, options);
-        let known = Uncertainty::new(&problem.linearize(&fit.x), &fit.x, &bounds, set.rows.len());
+        let (x, cost, passes, stop) = solver.solve(&residuals, *start);
+        let known = Uncertainty::new(&LeastSquares(&residuals).linearize(&x), &x, &free(), set.rows.len());
         runs.push(Run {
             name,
             start: i + 1,
             parameters: P,
-            passes: fit.passes,
-            stop: fit.stop.expect("a fit that ran to its end has a stop"),
+            passes,
+            stop,
             lre: (0..P)
-                .map(|k| lre(fit.x[k], set.certified[k]))
+                .map(|k| lre(x[k], set.certified[k]))
                 .fold(f64::INFINITY, f64::min),
-            lre_cost: lre(fit.at.cost, set.cost),
+            lre_cost: lre(cost, set.cost),
             lre_deviations: (0..P)
                 .map(|k| lre(known.held.standard_error(k), set.deviations[k]))
                 .fold(lre(known.scale, set.scale), f64::min),
@@ -136,43 +161,43 @@ pub fn options() -> Options<f64> {
 }
 
 /// All 54 runs.
-pub fn run_all(options: &Options<f64>) -> Vec<Run> {
+pub fn run_all<S: Solver>(solver: &S) -> Vec<Run<S::Stop>> {
     let mut runs = Vec::new();
     let all = &mut runs;
-    run::<2>(all, options, "Misra1a", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
-    run::<3>(all, options, "Chwirut2", |x, b| {
+    run::<_, 2>(all, solver, "Misra1a", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
+    run::<_, 3>(all, solver, "Chwirut2", |x, b| {
         (-b[0] * x[0]).exp() / (b[1] + b[2] * x[0])
     });
-    run::<3>(all, options, "Chwirut1", |x, b| {
+    run::<_, 3>(all, solver, "Chwirut1", |x, b| {
         (-b[0] * x[0]).exp() / (b[1] + b[2] * x[0])
     });
-    run::<6>(all, options, "Lanczos3", lanczos);
-    run::<8>(all, options, "Gauss1", gauss);
-    run::<8>(all, options, "Gauss2", gauss);
-    run::<2>(all, options, "DanWood", |x, b| b[0] * Dual::from(x[0]).pow(b[1]));
-    run::<2>(all, options, "Misra1b", |x, b| {
+    run::<_, 6>(all, solver, "Lanczos3", lanczos);
+    run::<_, 8>(all, solver, "Gauss1", gauss);
+    run::<_, 8>(all, solver, "Gauss2", gauss);
+    run::<_, 2>(all, solver, "DanWood", |x, b| b[0] * Dual::from(x[0]).pow(b[1]));
+    run::<_, 2>(all, solver, "Misra1b", |x, b| {
         b[0] * (1.0 - (1.0 + b[1] * x[0] / 2.0).powf(-2.0))
     });
-    run::<5>(all, options, "Kirby2", |x, b| {
+    run::<_, 5>(all, solver, "Kirby2", |x, b| {
         let x = x[0];
         (b[0] + (b[1] + b[2] * x) * x) / (1.0 + (b[3] + b[4] * x) * x)
     });
-    run::<7>(all, options, "Hahn1", cubic_by_cubic);
-    run::<3>(all, options, "Nelson", |x, b| b[0] - b[1] * x[0] * (-b[2] * x[1]).exp());
-    run::<5>(all, options, "MGH17", |x, b| {
+    run::<_, 7>(all, solver, "Hahn1", cubic_by_cubic);
+    run::<_, 3>(all, solver, "Nelson", |x, b| b[0] - b[1] * x[0] * (-b[2] * x[1]).exp());
+    run::<_, 5>(all, solver, "MGH17", |x, b| {
         b[0] + b[1] * (-b[3] * x[0]).exp() + b[2] * (-b[4] * x[0]).exp()
     });
-    run::<6>(all, options, "Lanczos1", lanczos);
-    run::<6>(all, options, "Lanczos2", lanczos);
-    run::<8>(all, options, "Gauss3", gauss);
-    run::<2>(all, options, "Misra1c", |x, b| {
+    run::<_, 6>(all, solver, "Lanczos1", lanczos);
+    run::<_, 6>(all, solver, "Lanczos2", lanczos);
+    run::<_, 8>(all, solver, "Gauss3", gauss);
+    run::<_, 2>(all, solver, "Misra1c", |x, b| {
         b[0] * (1.0 - (1.0 + 2.0 * b[1] * x[0]).powf(-0.5))
     });
-    run::<2>(all, options, "Misra1d", |x, b| b[0] * b[1] * x[0] / (1.0 + b[1] * x[0]));
-    run::<4>(all, options, "Roszman1", |x, b| {
+    run::<_, 2>(all, solver, "Misra1d", |x, b| b[0] * b[1] * x[0] / (1.0 + b[1] * x[0]));
+    run::<_, 4>(all, solver, "Roszman1", |x, b| {
         b[0] - b[1] * x[0] - (b[2] / (x[0] - b[3])).atan() / PI
     });
-    run::<9>(all, options, "ENSO", |x, b| {
+    run::<_, 9>(all, solver, "ENSO", |x, b| {
         let year = 2.0 * PI * x[0] / 12.0;
         let (first, second) = (2.0 * PI * x[0] / b[3], 2.0 * PI * x[0] / b[6]);
         b[0] + b[1] * year.cos()
@@ -182,20 +207,20 @@ pub fn run_all(options: &Options<f64>) -> Vec<Run> {
             + b[7] * second.cos()
             + b[8] * second.sin()
     });
-    run::<4>(all, options, "MGH09", |x, b| {
+    run::<_, 4>(all, solver, "MGH09", |x, b| {
         b[0] * (x[0] * x[0] + x[0] * b[1]) / (x[0] * x[0] + x[0] * b[2] + b[3])
     });
-    run::<7>(all, options, "Thurber", cubic_by_cubic);
-    run::<2>(all, options, "BoxBOD", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
-    run::<3>(all, options, "Rat42", |x, b| b[0] / (1.0 + (b[1] - b[2] * x[0]).exp()));
-    run::<3>(all, options, "MGH10", |x, b| b[0] * (b[1] / (x[0] + b[2])).exp());
-    run::<3>(all, options, "Eckerle4", |x, b| {
+    run::<_, 7>(all, solver, "Thurber", cubic_by_cubic);
+    run::<_, 2>(all, solver, "BoxBOD", |x, b| b[0] * (-b[1] * x[0]).one_less_exp());
+    run::<_, 3>(all, solver, "Rat42", |x, b| b[0] / (1.0 + (b[1] - b[2] * x[0]).exp()));
+    run::<_, 3>(all, solver, "MGH10", |x, b| b[0] * (b[1] / (x[0] + b[2])).exp());
+    run::<_, 3>(all, solver, "Eckerle4", |x, b| {
         b[0] / b[1] * (-0.5 * ((x[0] - b[2]) / b[1]).square()).exp()
     });
-    run::<4>(all, options, "Rat43", |x, b| {
+    run::<_, 4>(all, solver, "Rat43", |x, b| {
         b[0] / (1.0 + (b[1] - b[2] * x[0]).exp()).pow(1.0 / b[3])
     });
-    run::<3>(all, options, "Bennett5", |x, b| b[0] * (b[1] + x[0]).pow(-1.0 / b[2]));
+    run::<_, 3>(all, solver, "Bennett5", |x, b| b[0] * (b[1] + x[0]).pow(-1.0 / b[2]));
     runs
 }
 
@@ -214,25 +239,4 @@ fn gauss(x: &[f64], b: &[Dual<8>; 8]) -> Dual<8> {
 fn cubic_by_cubic(x: &[f64], b: &[Dual<7>; 7]) -> Dual<7> {
     let x = x[0];
     (b[0] + (b[1] + (b[2] + b[3] * x) * x) * x) / (1.0 + (b[4] + (b[5] + b[6] * x) * x) * x)
-}
-
-/// The runs as a Markdown table.
-pub fn table(runs: &[Run]) -> String {
-    let mut text = String::from(
-        "| set | start | P | LRE parameters | LRE cost | passes | stop |\n|---|--:|--:|--:|--:|--:|---|\n",
-    );
-    for run in runs {
-        let Run {
-            name,
-            start,
-            parameters,
-            passes,
-            stop,
-            lre,
-            lre_cost,
-            ..
-        } = run;
-        text += &format!("| {name} | {start} | {parameters} | {lre:.1} | {lre_cost:.1} | {passes} | {stop:?} |\n");
-    }
-    text
 }

@@ -50,6 +50,7 @@ fn keeps_the_contract(case: &Value) {
         "loss",
         "name",
         "samples",
+        "terms",
     ];
     assert_eq!(keys(case), contract);
     assert!(all_finite(case), "{case}");
@@ -108,6 +109,24 @@ fn a_scan_gets_a_verdict() {
         assert!(text.contains(word), "{word} is not in:\n{text}");
     }
     assert!(!text.contains("NaN") && !text.contains("inf "));
+}
+
+/// Without a volume lobe and absorption the data still tell four parameters, well.
+#[test]
+fn fewer_terms_are_judged_alone() {
+    let file = data("testdata2_sym_seed2.csv");
+    let arguments = [
+        file.to_str().expect("UTF-8"),
+        "--format",
+        "json",
+        "--terms",
+        "diffuse,surface",
+    ];
+    let case = json(&succeed(&arguments));
+    keeps_the_contract(&case);
+    assert_eq!(case["terms"], serde_json::json!(["diffuse", "surface"]));
+    assert!(case["free"].as_u64() <= Some(4));
+    assert!(case["loss"]["parameters"][2]["f64"] == 0.0 && case["loss"]["parameters"][5]["f64"] == 0.0);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use brdfit_core::joint::Joint;
 use brdfit_core::lm::{self, Bounds, Options, Problem};
 use brdfit_core::residuals::Scan;
 use brdfit_suite::tolerance::{self, check};
-use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 const SCANS: usize = 3;

@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Number of searches by each method, with seeds from 0
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
+    /// Terms of the model, of diffuse,surface,volume,absorbing
+    #[arg(long, value_name = "LIST", default_value = "all")]
+    terms: String,
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -62,6 +65,7 @@ enum Format {
 /// # Errors
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let terms = options::terms(&arguments.terms)?;
     let truth = arguments.truth.as_deref();
     let truth = truth.map(|list| options::all_parameters(list, "--truth")).transpose()?;
     let measurement = match &arguments.scan {
@@ -79,7 +83,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let bar = progress(streams.progress, scans.len(), arguments.seeds);
     let mut studies = Vec::new();
     for Subject { name, samples, truth } in &scans {
-        let study = study::study(name, samples, truth.as_ref(), arguments.seeds, || bar.inc(1));
+        let study = study::study(name, samples, truth.as_ref(), terms, arguments.seeds, || bar.inc(1));
         let study = study.map_err(|error| match &measurement {
             Some(measurement) => input::explain(measurement, error),
             None => Error::new(error.to_string()).in_file(name),

@@ -9,11 +9,13 @@ mod text;
 
 use std::path::PathBuf;
 
+use brdfit_core::brdf::ALL;
 use clap::{Args, ValueEnum};
 
 use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
+use crate::options;
 use crate::output::deliver;
 use assess::{Assessment, assess};
 
@@ -24,6 +26,9 @@ pub struct Arguments {
     /// A scan, as `brdfit fit` reads it; - is standard input [default: the built-in cases]
     #[arg(value_name = "SCAN")]
     scan: Option<PathBuf>,
+    /// Terms of the model, of diffuse,surface,volume,absorbing
+    #[arg(long, value_name = "LIST", default_value = "all", requires = "scan")]
+    terms: String,
     /// Form of the result
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
@@ -55,7 +60,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         }
         Some(path) => {
             let measurement = input::read_one(path, &arguments.read, streams.input)?;
-            let case = assess(&measurement.label(), &measurement.samples)
+            let terms = options::terms(&arguments.terms)?;
+            let case = assess(&measurement.label(), &measurement.samples, terms)
                 .map_err(|error| input::explain(&measurement, error))?;
             left_out::note(&[measurement], streams.errors);
             match arguments.format {
@@ -70,7 +76,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
 /// The assessment of every built-in case.
 pub fn built_in() -> Vec<Assessment> {
     let cases = cases::all();
-    let each = cases.iter().map(|case| assess(case.name, &case.samples));
+    let each = cases.iter().map(|case| assess(case.name, &case.samples, ALL));
     each.map(|case| case.expect("the built-in cases are valid in both number types"))
         .collect()
 }

@@ -114,6 +114,7 @@ pub fn study(
     name: &str,
     samples: &[Sample<f64>],
     truth: Option<&Params<f64>>,
+    terms: u8,
     seeds: u32,
     mut begin: impl FnMut(),
 ) -> Result<ScanStudy, FitError> {
@@ -126,6 +127,7 @@ pub fn study(
                 method,
                 precision,
                 seed: u64::from(seed),
+                terms,
                 ..FitOptions::default()
             };
             let mut fastest = trace(samples, &options)?;

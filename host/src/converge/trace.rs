@@ -3,14 +3,14 @@
 use std::cell::RefCell;
 use std::time::Instant;
 
-use brdfit_core::brdf::{ALL, Params};
+use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, Candidate, Evaluations, Scene};
 
-use crate::engine::{self, FitError, FitOptions, Method, Precision};
+use crate::engine::{self, FitError, FitOptions, Method, Precision, Work};
 use crate::simd::FastScan;
 
 /// An improvement.
@@ -42,7 +42,7 @@ pub fn passes(evaluations: Evaluations) -> f64 {
     f64::from(evaluations.linearize) + 0.5 * f64::from(evaluations.cost)
 }
 
-/// Searches on one thread with all terms, whatever `options.terms` says, and watches.
+/// Searches on one thread, and watches.
 ///
 /// The time begins when the scan stands in blocks, and each new best adds a look at the clock.
 ///
@@ -50,24 +50,38 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// [`FitError`].
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
     match options.precision {
-        Precision::F64 => watch::<f64>(samples, options),
-        Precision::F32 => watch::<f32>(samples, options),
+        Precision::F64 => engine::with_terms::<f64, _>(options.terms, Watch { samples, options })?,
+        Precision::F32 => engine::with_terms::<f32, _>(options.terms, Watch { samples, options })?,
     }
 }
 
-fn watch<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
-    const P: usize = 6;
+struct Watch<'a> {
+    samples: &'a [Sample<f64>],
+    options: &'a FitOptions,
+}
+
+impl<R: Real> Work<R> for Watch<'_> {
+    type Output = Result<Trace, FitError>;
+    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
+        watch::<R, TERMS, P>(self.samples, self.options)
+    }
+}
+
+fn watch<R: Real, const TERMS: u8, const P: usize>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+) -> Result<Trace, FitError> {
     if samples.len() < P {
         return Err(FitError::TooFew(samples.len(), P));
     }
     let blocks = engine::blocks::<R>(samples)?;
     let to_real = |p: &Params<f64>| Params::from_array(p.to_array().map(R::of));
-    let bounds = Scan::<R, ALL, P>::bounds(&to_real(&options.lower), &to_real(&options.upper));
+    let bounds = Scan::<R, TERMS, P>::bounds(&to_real(&options.lower), &to_real(&options.upper));
     let (lm, starts) = (Options::default(), options.starts());
     let begun = Instant::now();
     let watched = Watched {
         scene: FastScan {
-            scan: Scan::<R, ALL, P>::new(&blocks),
+            scan: Scan::<R, TERMS, P>::new(&blocks),
             simd: options.simd,
         },
         begun,
@@ -91,7 +105,7 @@ fn watch<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace
 
     let blocks = engine::blocks::<f64>(samples)?;
     let exact = FastScan {
-        scan: Scan::<f64, ALL, P>::new(&blocks),
+        scan: Scan::<f64, TERMS, P>::new(&blocks),
         simd: options.simd,
     };
     let record = |&(evaluations, elapsed_s, x): &(Evaluations, f64, [R; P])| {
@@ -99,7 +113,7 @@ fn watch<R: Real>(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace
         Record {
             evaluations,
             elapsed_s,
-            params: Scan::<f64, ALL, P>::params(&x),
+            params: Scan::<f64, TERMS, P>::params(&x),
             cost: exact.cost(&x),
         }
     };

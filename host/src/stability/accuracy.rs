@@ -1,6 +1,6 @@
 //! The error of ln f and of its gradient, in units in the last place of their natural scale.
 
-use brdfit_core::brdf::{ALL, Brdf, Params};
+use brdfit_core::brdf::{ALL, Brdf, Params, has};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use serde::Serialize;
@@ -77,10 +77,10 @@ fn is_promised<R: Real>(q: usize, params: [f64; 6], exact: [f64; 7]) -> bool {
     !faint && exact[q].abs() < R::MAX.f64()
 }
 
-/// Largest errors over a scan at `params`, of f64 and of f32, against the exact values.
+/// Largest errors over a scan at `params`, of ln f and of its derivatives by those of `terms`, of f64 and of f32, against the exact values.
 ///
 /// A derivative below epsilon times the largest of its column is measured against that: it does not count in J'J.
-pub fn errors(samples: &[Sample<f64>], params: [f64; 6]) -> (Errors, Errors) {
+pub fn errors(samples: &[Sample<f64>], terms: u8, params: [f64; 6]) -> (Errors, Errors) {
     let rows: Vec<_> = samples
         .iter()
         .map(|sample| {
@@ -89,17 +89,18 @@ pub fn errors(samples: &[Sample<f64>], params: [f64; 6]) -> (Errors, Errors) {
             (exact, scale, model::<f64>(sample, params), model::<f32>(sample, params))
         })
         .collect();
-    let double = largest::<f64>(params, rows.iter().map(|row| (row.0, row.1, row.2)));
-    let single = largest::<f32>(params, rows.iter().map(|row| (row.0, row.1, row.3)));
+    let double = largest::<f64>(terms, params, rows.iter().map(|row| (row.0, row.1, row.2)));
+    let single = largest::<f32>(terms, params, rows.iter().map(|row| (row.0, row.1, row.3)));
     (double, single)
 }
 
 type Row = ([f64; 7], [f64; 7], Option<[f64; 7]>);
 
-fn largest<R: Real>(params: [f64; 6], rows: impl Iterator<Item = Row> + Clone) -> Errors {
+fn largest<R: Real>(terms: u8, params: [f64; 6], rows: impl Iterator<Item = Row> + Clone) -> Errors {
+    let counts = |q: usize, exact| (q == 0 || has(terms, q - 1)) && is_promised::<R>(q, params, exact);
     let mut column = [0.0f64; 7];
     for (exact, ..) in rows.clone() {
-        for q in (0..7).filter(|&q| is_promised::<R>(q, params, exact)) {
+        for q in (0..7).filter(|&q| counts(q, exact)) {
             column[q] = column[q].max(exact[q].abs());
         }
     }
@@ -107,7 +108,7 @@ fn largest<R: Real>(params: [f64; 6], rows: impl Iterator<Item = Row> + Clone) -
     let mut errors = Errors::default();
     for (exact, scale, got) in rows {
         let Some(got) = got else { continue };
-        for q in (0..7).filter(|&q| is_promised::<R>(q, params, exact)) {
+        for q in (0..7).filter(|&q| counts(q, exact)) {
             let unit = epsilon * scale[q].max(epsilon * column[q]).max(f64::MIN_POSITIVE);
             let error = (got[q] - exact[q]).abs() / unit;
             let worst = if q == 0 { &mut errors.ln_f } else { &mut errors.gradient };

@@ -1,6 +1,6 @@
 //! One scan fitted in f64 and in f32, and what the difference costs.
 
-use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::brdf::{NAMES, Params, has};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use serde::Serialize;
@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::accuracy::{Errors, errors, model};
 use super::condition::condition;
 use crate::engine::{self, FitError, FitOptions, Outcome, Precision};
+use crate::options::term_names;
 use crate::report;
 
 /// Largest relative excess of MSE^2 that is good enough.
@@ -26,6 +27,8 @@ pub struct Assessment {
     pub name: String,
     /// Number of samples.
     pub samples: usize,
+    /// Terms of the fitted model.
+    pub terms: Vec<&'static str>,
     /// Condition number of J'J at the optimum, columns scaled to length 1, over the parameters inside their bounds that the scan sees; from 1 to 1e30.
     pub condition: f64,
     /// Number of those parameters.
@@ -96,12 +99,15 @@ impl Assessment {
     }
 }
 
-/// Fits a scan in both number types with all terms and compares.
+/// Fits a scan in both number types with a set of terms and compares.
 ///
 /// # Errors
 /// As [`engine::fit`]; [`FitError::Sample`] also where a sample is no number of f32.
-pub fn assess(name: &str, samples: &[Sample<f64>]) -> Result<Assessment, FitError> {
-    let options = FitOptions::default();
+pub fn assess(name: &str, samples: &[Sample<f64>], terms: u8) -> Result<Assessment, FitError> {
+    let options = FitOptions {
+        terms,
+        ..FitOptions::default()
+    };
     let double = engine::fit(samples, &options)?;
     let precision = Precision::F32;
     let single = engine::fit(samples, &FitOptions { precision, ..options })?;
@@ -126,13 +132,14 @@ pub fn assess(name: &str, samples: &[Sample<f64>]) -> Result<Assessment, FitErro
             Change { name, f64, f32, change }
         }),
     };
-    let columns = free_columns(samples, &double);
-    let (double_error, single_error) = errors(samples, double.params.to_array());
+    let columns = free_columns(samples, terms, &double);
+    let (double_error, single_error) = errors(samples, terms, double.params.to_array());
     let close = loss.excess_mse2 <= EXCESS && loss.curve_rms_ln <= CURVE_PART * fit.f64.rms_ln;
     let converged = single.stop.converged();
     Ok(Assessment {
         name: name.into(),
         samples: samples.len(),
+        terms: term_names(terms),
         free: columns.len(),
         condition: condition(columns),
         error_ulp: Precisions {
@@ -164,14 +171,14 @@ fn ln_f(params: &Params<f64>, sample: &Sample<f64>) -> f64 {
         .map_or(f64::NAN, |geometry| report::ln_f(params, &geometry))
 }
 
-/// Columns of J of the parameters that are inside their bounds and change the curve at all.
-fn free_columns(samples: &[Sample<f64>], outcome: &Outcome) -> Vec<Vec<f64>> {
+/// Columns of J of the parameters of `terms` that are inside their bounds and change the curve at all.
+fn free_columns(samples: &[Sample<f64>], terms: u8, outcome: &Outcome) -> Vec<Vec<f64>> {
     let params = outcome.params.to_array();
     let rows: Vec<[f64; 7]> = samples
         .iter()
         .filter_map(|sample| Some(model::<f64>(sample, params)?.map(|x| sample.weight * x)))
         .collect();
-    let inside = (0..6).filter(|&k| !outcome.at_bound.contains(&NAMES[k]));
+    let inside = (0..6).filter(|&k| has(terms, k) && !outcome.at_bound.contains(&NAMES[k]));
     let columns = inside.map(|k| rows.iter().map(|row| row[1 + k]).collect::<Vec<f64>>());
     // What is below rounding of ln f over the whole range of the parameter is not seen.
     let seen = |column: &Vec<f64>| column.iter().any(|x| x.abs() > 1e-18);

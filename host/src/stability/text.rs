@@ -80,7 +80,7 @@ fn end(fit: &Ended) -> String {
 fn notes() -> String {
     format!(
         "
-All quantities are dimensionless; the fits have all six parameters within the bounds of Table 1.
+All quantities are dimensionless; the parameters are within the bounds of Table 1.
 condition  ratio of the largest to the least eigenvalue of J'J at the f64 optimum, each column of J scaled
            to length 1, over the parameters that are inside their bounds and that the scan sees.
 ulp        largest error against 256-bit arithmetic, of ln f and of its six derivatives, in units in the

@@ -1,0 +1,132 @@
+//! Instructions of a pass over a scan and of a whole search, counted by `valgrind --tool=callgrind`: they do not depend on what else the machine does.
+//!
+//! `cargo run --release --example instructions > benches/results/instructions.md`; with arguments it does the work that is counted.
+
+use std::hint::black_box;
+use std::process::Command;
+
+use brdfit::converge::paper_scans;
+use brdfit::engine::{FitOptions, Precision, blocks, fit};
+use brdfit::simd::{FastScan, Simd};
+use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
+use brdfit_core::geometry::Sample;
+use brdfit_core::lm::Problem;
+use brdfit_core::real::Real;
+use brdfit_core::residuals::Scan;
+use brdfit_core::search::Scene;
+
+/// What is counted, and how often it is repeated.
+const WORK: [(&str, u64); 6] = [
+    ("cost", 100),
+    ("linearize", 100),
+    ("candidate", 100),
+    ("search1", 2),
+    ("search2", 2),
+    ("search3", 2),
+];
+const MODELS: [&str; 4] = ["all f64", "all f32", "diffuse,surface f64", "diffuse,surface f32"];
+/// Valgrind has no AVX-512.
+const INSTRUCTIONS: [&str; 2] = ["portable", "avx2"];
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match &arguments[..] {
+        [] => table(),
+        [work, model, simd, repeats] => {
+            let simd = Simd::available().into_iter().find(|one| one.name() == simd);
+            let Some(simd) = simd else { std::process::exit(3) };
+            let samples = &paper_scans().swap_remove(set_of(work)).samples;
+            run(work, model, simd, repeats.parse().expect("a number"), samples);
+        }
+        _ => panic!("no arguments, or what to do, the model, the instructions and how often"),
+    }
+}
+
+/// Which of the paper's sets is worked on: all kernels take the first.
+fn set_of(work: &str) -> usize {
+    work.strip_prefix("search")
+        .map_or(0, |set| set.parse::<usize>().expect("1 to 3") - 1)
+}
+
+fn run(work: &str, model: &str, simd: Simd, repeats: u64, samples: &[Sample<f64>]) {
+    const DS: u8 = DIFFUSE | SURFACE;
+    match model {
+        "all f64" => repeat::<f64, ALL, 6>(work, simd, repeats, samples, Precision::F64),
+        "all f32" => repeat::<f32, ALL, 6>(work, simd, repeats, samples, Precision::F32),
+        "diffuse,surface f64" => repeat::<f64, DS, 4>(work, simd, repeats, samples, Precision::F64),
+        _ => repeat::<f32, DS, 4>(work, simd, repeats, samples, Precision::F32),
+    }
+}
+
+fn repeat<R: Real, const TERMS: u8, const P: usize>(
+    work: &str,
+    simd: Simd,
+    repeats: u64,
+    samples: &[Sample<f64>],
+    precision: Precision,
+) {
+    let blocks = blocks::<R>(samples).expect("the set is valid");
+    let options = FitOptions {
+        terms: TERMS,
+        precision,
+        simd,
+        ..FitOptions::default()
+    };
+    let real = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
+    let bounds = Scan::<R, TERMS, P>::bounds(&real(&options.lower), &real(&options.upper));
+    let scene = FastScan {
+        scan: Scan::<R, TERMS, P>::new(&blocks),
+        simd,
+    };
+    let x = scene.candidate(&bounds, 0, 0, None);
+    for i in 0..repeats {
+        match work {
+            "cost" => drop(black_box(scene.cost(black_box(&x)))),
+            "linearize" => drop(black_box(scene.linearize(black_box(&x)))),
+            "candidate" => drop(black_box(scene.candidate(&bounds, 0, black_box(i), None))),
+            _ => drop(black_box(fit(black_box(samples), &options))),
+        }
+    }
+}
+
+/// Instructions of this program with some arguments, if they can be counted.
+fn counted(work: &str, model: &str, simd: &str, repeats: u64) -> Option<u64> {
+    let program = std::env::current_exe().expect("this program has a path");
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .args([work, model, simd, &repeats.to_string()])
+        .output()
+        .expect("valgrind is installed");
+    let text = String::from_utf8_lossy(&output.stderr);
+    let line = text.lines().find_map(|line| line.split_once("Collected :"));
+    line.filter(|_| output.status.success())
+        .and_then(|(_, count)| count.trim().parse().ok())
+}
+
+fn table() {
+    println!("# Instructions\n");
+    println!(
+        "171 samples; a pass of a kernel over test data 1, and whole default searches of test data 1 to 3 (seed 0, reading the samples included)."
+    );
+    println!(
+        "Counted by valgrind's callgrind, which knows no AVX-512, so the same on every x86-64 processor and with any load; the compiler's version and profile change them."
+    );
+    println!("Regenerate: `cargo run --release --example instructions > benches/results/instructions.md`.\n");
+    println!("| model | what | portable | of a sample | avx2 | of a sample |\n|---|---|--:|--:|--:|--:|");
+    let samples = 171.0;
+    for model in MODELS {
+        for (work, repeats) in WORK {
+            let cells = INSTRUCTIONS.map(|simd| {
+                let more = counted(work, model, simd, 2 * repeats);
+                let count = more
+                    .zip(counted(work, model, simd, repeats))
+                    .map(|(more, few)| (more - few) / repeats);
+                count.map_or("- | -".to_string(), |count| {
+                    format!("{count} | {:.1}", count as f64 / samples)
+                })
+            });
+            println!("| {model} | {work} | {} |", cells.join(" | "));
+        }
+    }
+}

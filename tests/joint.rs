@@ -6,8 +6,8 @@ use brdfit_core::joint::Joint;
 use brdfit_core::lm::{self, Bounds, Options, Problem};
 use brdfit_core::residuals::Scan;
 use brdfit_suite::tolerance::{self, check};
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 const SCANS: usize = 3;
 /// Coordinates at most: three scans of six parameters.

@@ -78,7 +78,7 @@ fn repeat<R: Real, const TERMS: u8, const P: usize>(
         scan: Scan::<R, TERMS, P>::new(&blocks),
         simd,
     };
-    let x = scene.candidate(&bounds, 0, 0, None);
+    let x = scene.candidate(&bounds, 0, 0, None).x;
     for i in 0..repeats {
         match work {
             "cost" => drop(black_box(scene.cost(black_box(&x)))),

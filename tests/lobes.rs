@@ -140,7 +140,7 @@ fn recovered<D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize>(x
     let facets = facets(&all);
     let scene = Composed::<f64, D, M, EXTRAS, P>::new(&facets);
     let found = search(&scene, &bounds::<P>(EXTRAS), 0, CANDIDATES, &Options::default());
-    found.minima.best().expect("a minimum").fit.at.cost
+    found.minima.best().expect("a minimum").cost
 }
 
 #[test]

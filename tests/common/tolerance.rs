@@ -42,6 +42,8 @@ pub const NIST_DEVIATION: Tolerance = Tolerance(1e-6);
 pub const NIST_MEDIAN_DEVIATION: Tolerance = Tolerance(3e-10);
 /// Largest relative distance of a cost from the published minimum of Moré, Garbow and Hillstrom, which has 6 digits; measured 8.4e-6.
 pub const MGH_COST: Tolerance = Tolerance(1e-5);
+/// Largest cost where the minimum is 0; measured 1e-30.
+pub const MGH_ZERO: Tolerance = Tolerance(1e-29);
 /// ln f against 60 digits, in epsilons of its natural scale (see tests/model.rs), f64; measured 1.14.
 pub const LN_F_F64: Tolerance = Tolerance(1.5);
 /// Its six derivatives; measured 1.50.
@@ -58,7 +60,6 @@ pub const FRESNEL_GRADIENT_F64: Tolerance = Tolerance(2.5);
 pub const FRESNEL_F32: Tolerance = Tolerance(5.0);
 /// dF/dn and dF/dkappa, f32; measured 2.03.
 pub const FRESNEL_GRADIENT_F32: Tolerance = Tolerance(2.5);
-pub const MGH_ZERO: Tolerance = Tolerance(1e-29);
 /// ln f less that of Eq. 14 as printed, on ordinary scenes, f64; measured 1.7e-14.
 pub const LITERAL_LN_F: Tolerance = Tolerance(5e-14);
 /// p dlnf/dp less central differences over 2e-5 p, relative where above 1; measured 6.3e-10.

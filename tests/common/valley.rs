@@ -50,7 +50,7 @@ pub fn passes_to_the_end(set: u32, kind: &str, bent: bool) -> Passes {
     let mut lost = 0;
     let mut passes = Vec::new();
     for i in 0..FITS {
-        let start = scene.candidate(&bounds, 0, i, None);
+        let start = scene.candidate(&bounds, 0, i, None).x;
         let fit = if bent {
             fit(&scene, &bounds, start, &options)
         } else {

@@ -97,7 +97,9 @@ fn candidate_of<R: Real, const TERMS: u8, const P: usize>(
 ) -> Result<brdfit_params<R>, brdfit_error> {
     enough::<P>(samples)?;
     let scan = Scan::<R, TERMS, P>::new(blocks);
-    let x = scan.candidate(&bounds::<R, TERMS, P>(options), options.seed, index, None);
+    let x = scan
+        .candidate(&bounds::<R, TERMS, P>(options), options.seed, index, None)
+        .x;
     Ok(Scan::<R, TERMS, P>::params(&x).into())
 }
 

@@ -190,8 +190,6 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, Fit
     let plain = |samples: &[Sample<f64>], options: &FitOptions| match options.precision {
         Precision::F64 => with_terms(options.terms, Search::<f64>(samples, options, PhantomData))?,
         Precision::F32 => with_terms(options.terms, Search::<f32>(samples, options, PhantomData))?,
-        Precision::F64 => with_terms::<f64, _>(options.terms, Search { samples, options })?,
-        Precision::F32 => with_terms::<f32, _>(options.terms, Search { samples, options })?,
     };
     if options.robust {
         robust::fit(samples, options, plain)
@@ -213,25 +211,12 @@ pub fn descend(
 }
 
 /// A computation with one compiled set of terms; a closure can not be generic.
-trait WithTerms {
+pub(crate) trait WithTerms {
     type Output;
     fn run<const TERMS: u8, const P: usize>(self) -> Self::Output;
 }
 
-fn with_terms<C: WithTerms>(terms: u8, computation: C) -> Result<C::Output, FitError> {
-/// Work on a scan that is compiled for each set of terms.
-pub(crate) trait Work<R> {
-    /// What it makes.
-    type Output;
-    /// Does it for `TERMS`, which have `P` parameters.
-    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output;
-}
-
-/// Does `work` for a set of terms.
-///
-/// # Errors
-/// [`FitError::Terms`].
-pub(crate) fn with_terms<R: Real, W: Work<R>>(terms: u8, work: W) -> Result<W::Output, FitError> {
+pub(crate) fn with_terms<C: WithTerms>(terms: u8, computation: C) -> Result<C::Output, FitError> {
     const D: u8 = DIFFUSE;
     const S: u8 = SURFACE;
     const V: u8 = VOLUME;
@@ -280,16 +265,6 @@ impl WithTerms for Descent<'_> {
         let best = finite.min_by(|a, b| a.at.cost.total_cmp(&b.at.cost))?;
         Some((best.at.cost, Scan::<f64, TERMS, P>::params(&best.x)))
     }
-        D => work.run::<D, 1>(),
-        S => work.run::<S, 3>(),
-        SA => work.run::<SA, 4>(),
-        SVA => work.run::<SVA, 5>(),
-        DS => work.run::<DS, 4>(),
-        DSA => work.run::<DSA, 5>(),
-        DSV => work.run::<DSV, 5>(),
-        ALL => work.run::<ALL, 6>(),
-        other => return Err(FitError::Terms(other)),
-    })
 }
 
 /// The samples of a scan in the number type of the fit, as blocks.
@@ -309,18 +284,6 @@ pub fn blocks<R: Real>(samples: &[Sample<f64>]) -> Result<Vec<Block<R>>, FitErro
         observations.push(Observation::new(&sample).map_err(|error| FitError::Sample(index, error))?);
     }
     Ok(observations.chunks(LANES).map(Block::new).collect())
-}
-
-struct Search<'a> {
-    samples: &'a [Sample<f64>],
-    options: &'a FitOptions,
-}
-
-impl<R: Real> Work<R> for Search<'_> {
-    type Output = Result<Outcome, FitError>;
-    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
-        run::<R, TERMS, P>(self.samples, self.options)
-    }
 }
 
 fn run<R: Real, const TERMS: u8, const P: usize>(

@@ -8,6 +8,7 @@ mod polar;
 mod profile;
 mod residuals;
 mod overlay;
+mod profile;
 mod svg;
 mod waterfall;
 
@@ -24,6 +25,7 @@ pub use profile::profile_svg;
 pub use residuals::residuals_svg;
 pub use waterfall::waterfall_svg;
 pub use overlay::{Overlay, overlay_svg};
+pub use profile::profile_svg;
 
 use axis::Axis;
 use curve::{LnF, curve, eq_14, mse2};

@@ -9,6 +9,8 @@ use brdfit_core::search::{CANDIDATES, search};
 
 use crate::engine::FitError;
 
+type Fit = fn(&Model, &[Sample<f64>], u64) -> Result<Fitted, FitError>;
+
 /// A model that can be compared.
 #[derive(Clone, Copy)]
 pub struct Model {
@@ -18,7 +20,7 @@ pub struct Model {
     pub what: &'static str,
     /// Number of its parameters.
     pub parameters: usize,
-    fit: fn(&Model, &[Sample<f64>], u64) -> Result<Fitted, FitError>,
+    fit: Fit,
     ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
 }
 

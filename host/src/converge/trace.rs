@@ -1,6 +1,7 @@
 //! One search with a clock beside it: what it had found, when, and after how many passes.
 
 use std::cell::RefCell;
+use std::marker::PhantomData;
 use std::time::Instant;
 
 use brdfit_core::brdf::Params;
@@ -10,7 +11,7 @@ use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, Candidate, Evaluations, Scene};
 
-use crate::engine::{self, FitError, FitOptions, Method, Precision, Work};
+use crate::engine::{self, FitError, FitOptions, Method, Precision, WithTerms};
 use crate::simd::FastScan;
 
 /// An improvement.
@@ -50,20 +51,16 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// [`FitError`].
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
     match options.precision {
-        Precision::F64 => engine::with_terms::<f64, _>(options.terms, Watch { samples, options })?,
-        Precision::F32 => engine::with_terms::<f32, _>(options.terms, Watch { samples, options })?,
+        Precision::F64 => engine::with_terms(options.terms, Watch::<f64>(samples, options, PhantomData))?,
+        Precision::F32 => engine::with_terms(options.terms, Watch::<f32>(samples, options, PhantomData))?,
     }
 }
 
-struct Watch<'a> {
-    samples: &'a [Sample<f64>],
-    options: &'a FitOptions,
-}
-
-impl<R: Real> Work<R> for Watch<'_> {
+struct Watch<'a, R>(&'a [Sample<f64>], &'a FitOptions, PhantomData<R>);
+impl<R: Real> WithTerms for Watch<'_, R> {
     type Output = Result<Trace, FitError>;
     fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
-        watch::<R, TERMS, P>(self.samples, self.options)
+        watch::<R, TERMS, P>(self.0, self.1)
     }
 }
 

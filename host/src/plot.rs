@@ -4,11 +4,10 @@ mod albedo;
 mod axis;
 mod converge;
 mod curve;
+mod overlay;
 mod polar;
 mod profile;
 mod residuals;
-mod overlay;
-mod profile;
 mod svg;
 mod waterfall;
 
@@ -20,12 +19,11 @@ use brdfit_core::real::Real;
 
 pub use albedo::albedo_svg;
 pub use converge::converge_svg;
+pub use overlay::{Overlay, overlay_svg};
 pub use polar::polar_svg;
 pub use profile::profile_svg;
 pub use residuals::residuals_svg;
 pub use waterfall::waterfall_svg;
-pub use overlay::{Overlay, overlay_svg};
-pub use profile::profile_svg;
 
 use axis::Axis;
 use curve::{LnF, curve, eq_14, mse2};

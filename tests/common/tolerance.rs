@@ -159,14 +159,13 @@ pub const REFLECTANCE: Tolerance = Tolerance(2e-4);
 /// Its derivatives but that by m less central differences, relative where above 0.01; measured 3.3e-5.
 pub const REFLECTANCE_GRADIENT: Tolerance = Tolerance(1e-4);
 /// That by m less central differences of the midpoint rule of 400^2 directions; measured 1.2e-3.
-pub const REFLECTANCE_BY_M: f64 = 2e-3;
-/// Rise of the cost at the ends of profile intervals over what it should be there, less 1, by an independent search, which may stay above; measured 6.5e-3.
-pub const INTERVAL_END: f64 = 1e-2;
-/// Width of the 95 % profile interval of rho_d over that from its standard error, less 1; measured 6.6e-3.
-pub const INTERVAL_QUADRATIC: f64 = 1e-2;
-/// Standard deviation of rho_d over 400 copies over its standard error, less 1; the spread of 400 copies is itself known to 0.035; measured between 0.01 and 0.1.
-pub const BOOTSTRAP: f64 = 0.1;
 pub const REFLECTANCE_BY_M: Tolerance = Tolerance(2e-3);
+/// Rise of the cost at the ends of profile intervals over what it should be there, less 1, by an independent search, which may stay above; measured 6.5e-3.
+pub const INTERVAL_END: Tolerance = Tolerance(1e-2);
+/// Width of the 95 % profile interval of rho_d over that from its standard error, less 1; measured 6.6e-3.
+pub const INTERVAL_QUADRATIC: Tolerance = Tolerance(1e-2);
+/// Standard deviation of rho_d over 400 copies over its standard error, less 1; the spread of 400 copies is itself known to 0.035; measured between 0.01 and 0.1.
+pub const BOOTSTRAP: Tolerance = Tolerance(0.1);
 
 // Files as instruments write them.
 

@@ -2,7 +2,7 @@
 
 use crate::fresnel::{Fresnel, Index};
 use crate::geometry::{Block, Geometry, SURFACE_LOBE, VOLUME_LOBE};
-use crate::pack::Pack;
+use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
 /// Lambertian term `rho_d / pi`.
@@ -136,7 +136,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
     }
 
     /// As `new`, but the last parameter is kappa^2.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(crate) fn with_kappa2(params: &Params<R>) -> Self {
         let when = |present: bool, x: R| if present { x } else { R::ZERO };
         let rho_d = when(Self::DIFFUSE, params.rho_d);
@@ -164,7 +164,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
     }
 
     /// Where no diffuse term keeps the lobes from underflow, the largest exponent of each lane.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     pub(crate) fn lift<const L: usize>(&self, block: &Block<R, L>) -> Lift<R, L> {
         let mut shift = [R::ZERO; L];
         let mut lift = [R::ONE; L];
@@ -253,6 +253,34 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         block: &Block<R, L>,
         lane: usize,
     ) -> [Pack<R, G>; 3] {
+        if ALONE {
+            let mut columns = [Pack::splat(R::ZERO); 3];
+            for k in 0..G {
+                let one = self.column(&block.lane(lane + k * (L / G)));
+                for i in 0..3 {
+                    columns[i].0[k] = one[i].0[0];
+                }
+            }
+            return columns;
+        }
+        self.columns_pack::<K, G, L>(block, lane)
+    }
+
+    /// `relative_columns` of a block of one lane.
+    fn column(&self, block: &Block<R, 1>) -> [Pack<R, 1>; 3] {
+        match lobes(TERMS) {
+            0 => self.columns_pack::<0, 1, 1>(block, 0),
+            1 => self.columns_pack::<1, 1, 1>(block, 0),
+            _ => self.columns_pack::<2, 1, 1>(block, 0),
+        }
+    }
+
+    #[inline(always)]
+    fn columns_pack<const K: usize, const G: usize, const L: usize>(
+        &self,
+        block: &Block<R, L>,
+        lane: usize,
+    ) -> [Pack<R, G>; 3] {
         let (beam, fresnel) = self.beams::<K, G, L, false>(block, Pack::splat(R::ZERO), lane);
         let lobes = beam * fresnel.f;
         let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
@@ -263,17 +291,21 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         columns
     }
 
-    #[inline(always)]
+    /// `rows` of a block of one lane.
+    pub(crate) fn row<const GRADIENT: bool>(&self, block: &Block<R, 1>) -> Rows<R, 1> {
+        let lift = self.lift(block);
+        match lobes(TERMS) {
+            0 => self.rows::<0, 1, 1, GRADIENT>(block, &lift, 0),
+            1 => self.rows::<1, 1, 1, GRADIENT>(block, &lift, 0),
+            _ => self.rows::<2, 1, 1, GRADIENT>(block, &lift, 0),
+        }
+    }
+
     fn single<const GRADIENT: bool>(&self, geometry: &Geometry<R>) -> Rows<R, 1> {
         let mut block = Block::empty();
         block.set_geometry(0, geometry);
         block.weight = [R::ONE];
-        let lift = self.lift(&block);
-        match lobes(TERMS) {
-            0 => self.rows::<0, 1, 1, GRADIENT>(&block, &lift, 0),
-            1 => self.rows::<1, 1, 1, GRADIENT>(&block, &lift, 0),
-            _ => self.rows::<2, 1, 1, GRADIENT>(&block, &lift, 0),
-        }
+        self.row::<GRADIENT>(&block)
     }
 
     /// ln f, f in sr^-1; where f vanishes (all weights 0), ln of the smallest sum that counts.

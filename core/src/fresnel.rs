@@ -1,6 +1,6 @@
 //! Unpolarised Fresnel reflectance of a complex index n - i kappa, with its derivatives.
 
-use crate::pack::Pack;
+use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
 /// The index of refraction, and what follows from it alone.
@@ -57,6 +57,30 @@ impl<R: Real> Index<R> {
     /// With h = N/p = dp/dN of the complex index N = n - i kappa, conj(r_s) dr_s/dp = 2 c conj(eps - 1) / u^2, and likewise for t.
     #[inline(always)]
     pub fn reflect<const K: usize, const GRADIENT: bool>(&self, c: Pack<R, K>) -> Fresnel<R, K> {
+        if !ALONE {
+            return self.reflect_pack::<K, GRADIENT>(c);
+        }
+        let mut all = Fresnel {
+            f: c,
+            d_n2: c,
+            d_kappa2: c,
+        };
+        for k in 0..K {
+            let one = self.reflect_one(c.0[k]);
+            all.f.0[k] = one.f.0[0];
+            all.d_n2.0[k] = one.d_n2.0[0];
+            all.d_kappa2.0[k] = one.d_kappa2.0[0];
+        }
+        all
+    }
+
+    #[inline(never)]
+    fn reflect_one(&self, c: R) -> Fresnel<R, 1> {
+        self.reflect_pack::<1, true>(Pack([c]))
+    }
+
+    #[inline(always)]
+    fn reflect_pack<const K: usize, const GRADIENT: bool>(&self, c: Pack<R, K>) -> Fresnel<R, K> {
         let (half, two) = (R::of(0.5), R::of(2.0));
         let c2 = c * c;
         let s2 = c2.map(|c2| R::ONE - c2);

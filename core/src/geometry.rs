@@ -242,6 +242,20 @@ impl<R: Real, const L: usize> Block<R, L> {
         }
     }
 
+    /// One lane as a block of its own.
+    pub(crate) fn lane(&self, lane: usize) -> Block<R, 1> {
+        // So the compiler sees that no index is out of range.
+        let lane = lane % L;
+        let both = |rows: &[[R; L]; 2]| [[rows[0][lane]], [rows[1][lane]]];
+        Block {
+            tan2_theta_h: both(&self.tan2_theta_h),
+            cos_theta_d: both(&self.cos_theta_d),
+            factor: both(&self.factor),
+            ln_f: [self.ln_f[lane]],
+            weight: [self.weight[lane]],
+        }
+    }
+
     pub(crate) fn set_geometry(&mut self, lane: usize, geometry: &Geometry<R>) {
         for (lobe, from) in geometry.lobes.iter().enumerate() {
             self.tan2_theta_h[lobe][lane] = from.tan2_theta_h;

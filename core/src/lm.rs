@@ -159,23 +159,19 @@ impl<R: Real, const P: usize> Fit<R, P> {
         if self.passes >= options.max_passes {
             return self.end(Stop::Passes);
         }
-        let Linearization {
-            cost,
-            gradient,
-            hessian,
-        } = self.at;
+        let cost = self.at.cost;
         let mut lower = [R::ZERO; P];
         let mut upper = [R::ZERO; P];
-        let mut damped = hessian;
+        let mut damped = self.at.hessian;
         for i in 0..P {
             lower[i] = bounds.lower[i] - self.x[i];
             upper[i] = bounds.upper[i] - self.x[i];
             // A column of J below rounding has no scale of its own, and its step could be of any size: see it as just above.
             let unseen = R::EPSILON / self.x[i].abs().max(R::ONE);
             let scale = (unseen * unseen * cost).max(self.scale[i]).max(R::MIN_POSITIVE);
-            damped[i][i] = hessian[i][i] + self.damping * scale;
+            damped[i][i] += self.damping * scale;
         }
-        let step = boxqp::minimize(&damped, &gradient, &lower, &upper);
+        let step = boxqp::minimize(&damped, &self.at.gradient, &lower, &upper);
         let mut straight = self.x;
         for i in 0..P {
             straight[i] += step[i];
@@ -201,9 +197,9 @@ impl<R: Real, const P: usize> Fit<R, P> {
         for i in 0..P {
             let mut h_step = R::ZERO;
             for j in 0..P {
-                h_step += hessian[i][j] * step[j];
+                h_step += self.at.hessian[i][j] * step[j];
             }
-            predicted -= step[i] * (gradient[i] + gradient[i] + h_step);
+            predicted -= step[i] * (self.at.gradient[i] + self.at.gradient[i] + h_step);
         }
         if self.damping <= R::of(1e-2) && !(predicted > options.cost_tolerance * cost) {
             return self.end(Stop::Cost);

@@ -11,6 +11,9 @@ use crate::real::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pack<R, const K: usize>(pub [R; K]);
 
+/// A microcontroller has no use for numbers side by side, but little memory: there each goes alone through the longer formulas, of which the image has one copy.
+pub(crate) const ALONE: bool = cfg!(target_os = "none");
+
 impl<R: Real, const K: usize> Pack<R, K> {
     /// The same number everywhere.
     #[inline(always)]
@@ -25,17 +28,29 @@ impl<R: Real, const K: usize> Pack<R, K> {
     /// Exponentials: [`Real::exp_pack`].
     #[inline(always)]
     pub fn exp(self) -> Self {
-        R::exp_pack(self)
+        if ALONE && K > 1 {
+            self.map(R::exp)
+        } else {
+            R::exp_pack(self)
+        }
     }
     /// Natural logarithms: [`Real::ln_pack`].
     #[inline(always)]
     pub fn ln(self) -> Self {
-        R::ln_pack(self)
+        if ALONE && K > 1 {
+            self.map(R::ln)
+        } else {
+            R::ln_pack(self)
+        }
     }
     /// Reciprocals of the square roots: [`Real::rsqrt_pack`].
     #[inline(always)]
     pub fn rsqrt(self) -> Self {
-        R::rsqrt_pack(self)
+        if ALONE && K > 1 {
+            self.map(R::rsqrt)
+        } else {
+            R::rsqrt_pack(self)
+        }
     }
     /// One function of each.
     #[inline(always)]

@@ -64,17 +64,17 @@ pub trait Real:
     /// Reciprocals of the square roots of numbers from `MIN_POSITIVE` to its reciprocal, at most 1 ulp; other arguments, 0 among them, give an unspecified number or NaN.
     fn rsqrt_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K>;
     /// [`Real::exp_pack`] of one number.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn exp(self) -> Self {
         Pack([self]).exp().0[0]
     }
     /// [`Real::ln_pack`] of one number.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn ln(self) -> Self {
         Pack([self]).ln().0[0]
     }
     /// [`Real::rsqrt_pack`] of one number.
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn rsqrt(self) -> Self {
         Pack([self]).rsqrt().0[0]
     }

@@ -4,7 +4,7 @@ use crate::brdf::{Brdf, Params, has, lobes, parameters, slot};
 use crate::fresnel::Index;
 use crate::geometry::{Block, LANES};
 use crate::lm::{Bounds, Linearization, Problem};
-use crate::pack::Pack;
+use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
 /// The blocks of one scan, for a model of `TERMS` with its `P` parameters.
@@ -136,6 +136,9 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
 impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn cost(&self, x: &[R; P]) -> R {
+        if ALONE {
+            return self.cost_alone(x);
+        }
         match lobes(TERMS) {
             0 => self.cost_of::<0>(x),
             1 => self.cost_of::<GROUP>(x),
@@ -151,6 +154,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        if ALONE {
+            return self.linearize_alone(x);
+        }
         match lobes(TERMS) {
             0 => self.linearize_of::<0>(x),
             1 => self.linearize_of::<GROUP>(x),
@@ -315,6 +321,82 @@ pub(crate) fn bend<R: Real, const P: usize>(
         }
     }
     bent
+}
+
+/// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+    fn cost_alone(&self, x: &[R; P]) -> R {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let mut squares = [R::ZERO; SUMS];
+        for block in self.blocks {
+            for (lane, sum) in squares.iter_mut().enumerate() {
+                let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, TERMS, P>(&brdf, block, lane));
+                *sum += a * a + b * b;
+            }
+        }
+        total(&squares)
+    }
+
+    fn linearize_alone(&self, x: &[R; P]) -> Linearization<R, P> {
+        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        // In the order of `total`.
+        let two = |lane| add(self.partial(&brdf, lane), &self.partial(&brdf, lane + 1));
+        let four = |lane| add(two(lane), &two(lane + 2));
+        let mut sums = add(four(0), &four(4));
+        for i in 0..P {
+            for j in 0..i {
+                sums.hessian[j][i] = sums.hessian[i][j];
+            }
+        }
+        sums
+    }
+
+    /// The sums over one of the first eight lanes, and its other half, of all blocks; of J'J the lower half.
+    #[inline(never)]
+    fn partial(&self, brdf: &Brdf<R, TERMS>, lane: usize) -> Linearization<R, P> {
+        let mut sums = Linearization {
+            cost: R::ZERO,
+            gradient: [R::ZERO; P],
+            hessian: [[R::ZERO; P]; P],
+        };
+        for block in self.blocks {
+            let [(a, a_row), (b, b_row)] = [lane, lane + SUMS].map(|lane| row::<R, TERMS, P>(brdf, block, lane));
+            sums.cost += a * a + b * b;
+            for i in 0..P {
+                sums.gradient[i] += a_row[i] * a + b_row[i] * b;
+                for j in 0..=i {
+                    sums.hessian[i][j] += a_row[i] * a_row[j] + b_row[i] * b_row[j];
+                }
+            }
+        }
+        sums
+    }
+}
+
+fn add<R: Real, const P: usize>(mut x: Linearization<R, P>, y: &Linearization<R, P>) -> Linearization<R, P> {
+    x.cost += y.cost;
+    for i in 0..P {
+        x.gradient[i] += y.gradient[i];
+        for j in 0..=i {
+            x.hessian[i][j] += y.hessian[i][j];
+        }
+    }
+    x
+}
+
+/// Residual and row of J of one lane.
+fn row<R: Real, const TERMS: u8, const P: usize>(brdf: &Brdf<R, TERMS>, block: &Block<R>, lane: usize) -> (R, [R; P]) {
+    let one = block.lane(lane);
+    let model = brdf.row::<true>(&one);
+    let mut row = [R::ZERO; P];
+    for i in 0..6 {
+        if has(TERMS, i)
+            && let Some(place) = row.get_mut(slot(TERMS, i))
+        {
+            *place = model.gradient[i].0[0];
+        }
+    }
+    ((model.ln_f.0[0] - one.ln_f[0]) * one.weight[0], row)
 }
 
 #[inline(always)]

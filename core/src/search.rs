@@ -237,7 +237,7 @@ impl<R: Real, S: Scene<R, P>, const P: usize> Search<'_, R, S, P> {
         }
         let mut candidates: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
         let keep = stages.first().map_or(KEPT, |stage| stage.0);
-        for (_, i, x) in ranked {
+        for &(_, i, x) in &ranked {
             self.evaluations.cost += 1;
             minima::insert(&mut candidates, keep, (self.scene.cost(&x), i, x), |candidate| {
                 candidate.0

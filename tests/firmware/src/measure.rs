@@ -56,15 +56,24 @@ fn main() -> ! {
 }
 
 fn bounds<R: Real>() -> Bounds<R, P> {
-    let of = |array: [f64; 6]| Params::from_array(array.map(R::of));
+    // Each by itself, or the image would convert them from f64 when it runs.
+    let (zero, one, hundred) = (R::ZERO, R::ONE, R::of(100.0));
     Scan::<R, TERMS, P>::bounds(
-        &of([0.0, 0.0, 0.0, 1e-5, 1.0, 0.0]),
-        &of([1.0, 100.0, 100.0, 10.0, 100.0, 100.0]),
+        &Params::from_array([zero, zero, zero, R::of(1e-5), one, zero]),
+        &Params::from_array([one, hundred, hundred, R::of(10.0), hundred, hundred]),
     )
 }
 
 fn start<R: Real>() -> [R; P] {
-    Scan::<R, TERMS, P>::coordinates(&Params::from_array([0.1, 1.0, 0.01, 0.2, 1.5, 0.5].map(R::of)))
+    let (tenth, one) = (R::of(0.1), R::ONE);
+    Scan::<R, TERMS, P>::coordinates(&Params::from_array([
+        tenth,
+        one,
+        R::of(0.01),
+        R::of(0.2),
+        R::of(1.5),
+        R::of(0.5),
+    ]))
 }
 
 /// Samples that nobody knows go in, parameters go out.

@@ -1,6 +1,6 @@
 //! Writes the log that comes in on standard input as text: `decode ELF`, where ELF is the image that logs.
 //!
-//! defmt's own decoder with little around it: `defmt-print` does the same, but takes five times as long to build.
+//! defmt's own decoder with little around it: `defmt-print` does the same, but takes three times as long to build.
 
 use std::io::{self, Read};
 

@@ -50,8 +50,8 @@ pub const LN_F_F64: Tolerance = Tolerance(1.5);
 pub const GRADIENT_F64: Tolerance = Tolerance(2.0);
 /// ln f, f32; measured 0.93.
 pub const LN_F_F32: Tolerance = Tolerance(1.0);
-/// Its six derivatives, f32; measured 1.41.
-pub const GRADIENT_F32: Tolerance = Tolerance(1.5);
+/// Its six derivatives, f32; measured 1.68.
+pub const GRADIENT_F32: Tolerance = Tolerance(2.0);
 /// F against 60 digits, in epsilons of its natural scale, f64; measured 4.50.
 pub const FRESNEL_F64: Tolerance = Tolerance(5.0);
 /// dF/dn and dF/dkappa; measured 2.34.
@@ -96,8 +96,8 @@ pub const SMOOTH_F64: Tolerance = Tolerance(1e-30);
 pub const NORMAL_F64: Tolerance = Tolerance(2e-18);
 /// The same in f32; measured 5.3e-13.
 pub const NORMAL_F32: Tolerance = Tolerance(2e-12);
-/// Cost of a scan of n = kappa = 100, the corner of Table 1, where a search finds it; measured 1.8e-29.
-pub const METAL: Tolerance = Tolerance(5e-29);
+/// Cost of a scan of n = kappa = 100, the corner of Table 1, where a search finds it; measured 4.0e-30.
+pub const METAL: Tolerance = Tolerance(3e-29);
 /// Root mean squared residual of ln f where it finds the dielectric of n = 3.86 instead; measured 3.3e-4.
 pub const METAL_LIKE: Tolerance = Tolerance(5e-4);
 /// Share of the searches that end there; measured 0.1.
@@ -132,13 +132,13 @@ pub const STABLE_LN_F: Tolerance = Tolerance(1.5);
 /// Its six derivatives; measured 4.9, where f is 1e-17 sr^-1.
 pub const STABLE_GRADIENT: Tolerance = Tolerance(5.0);
 /// Relative error of any parameter of test data 1 and 2 without noise; dimensionless.
-/// 1e-6 was asked for; measured 3.2e-11, which is rounding times the root of the condition, 1e5.
-pub const RECOVERED: Tolerance = Tolerance(1e-10);
+/// 1e-6 was asked for; measured 6.5e-12, which is rounding times the root of the condition, 1e5.
+pub const RECOVERED: Tolerance = Tolerance(3e-11);
 /// Cost of test data 3 without noise.
 /// 1e-26 was asked for; measured 9.3e-30, which is rounding.
 pub const VALLEY_COST: Tolerance = Tolerance(5e-29);
 /// Most passes of one fit from each of 100 candidates to its end, the nine sets with noise; measured 977, into a minimum of test data 1 with a thousand times the cost of the best.
-pub const PASSES_NOISY: Tolerance = Tolerance(1000.0);
+pub const PASSES_NOISY: Tolerance = Tolerance(1100.0);
 /// The same of test data 2 and 3 alone, in whose valleys n and kappa end; measured 122.
 pub const PASSES_VALLEY: Tolerance = Tolerance(130.0);
 /// The same without noise, where the valley is followed to the last bit; measured 484.
@@ -161,7 +161,7 @@ pub const REFLECTANCE_GRADIENT: Tolerance = Tolerance(1e-4);
 /// That by m less central differences of the midpoint rule of 400^2 directions; measured 1.2e-3.
 pub const REFLECTANCE_BY_M: Tolerance = Tolerance(2e-3);
 /// Rise of the cost at the ends of profile intervals over what it should be there, less 1, by an independent search, which may stay above; measured 6.5e-3.
-pub const INTERVAL_END: Tolerance = Tolerance(1e-2);
+pub const INTERVAL_END: Tolerance = Tolerance(1e-3);
 /// Width of the 95 % profile interval of rho_d over that from its standard error, less 1; measured 6.6e-3.
 pub const INTERVAL_QUADRATIC: Tolerance = Tolerance(1e-2);
 /// Standard deviation of rho_d over 400 copies over its standard error, less 1; the spread of 400 copies is itself known to 0.035; measured between 0.01 and 0.1.

@@ -163,29 +163,21 @@ fn derivative_by_the_smallest_m_at_grazing() {
     );
 }
 
-/// The corner of Table 1 is reached to the last bit, or else the dielectric whose F has nearly the same course: noise of 0.1 % hides which.
+/// Every search reaches the corner of Table 1, to the last bit; noise of 0.1 % hides it behind a dielectric whose F has nearly the same course.
 #[test]
 fn metal_of_index_100() {
-    const SEARCHES: u32 = 20;
     let samples = simulated(0.5, 5, [0.1, 5.0, 0.5, 0.3, 100.0, 100.0]);
-    let (mut missed, mut exact, mut like) = (0, 0.0f64, 0.0f64);
-    for seed in 0..SEARCHES {
+    let mut worst = 0.0f64;
+    for seed in 0..20 {
         let options = FitOptions {
-            seed: seed.into(),
+            seed,
             ..FitOptions::default()
         };
         let found = engine::fit(&samples, &options).expect("a valid scan");
-        if found.params.n > 50.0 {
-            exact = exact.max(found.cost);
-        } else {
-            missed += 1;
-            like = like.max(found.rms_ln);
-        }
+        worst = worst.max(found.cost);
     }
-    println!("n = kappa = 100: cost {exact:e}, missed by {missed} with rms {like:e}");
-    check(exact, tolerance::METAL);
-    check(like, tolerance::METAL_LIKE);
-    check(f64::from(missed) / f64::from(SEARCHES), tolerance::METAL_MISSED);
+    println!("n = kappa = 100: cost {worst:e}");
+    check(worst, tolerance::METAL);
     both(&samples);
 }
 

@@ -96,12 +96,8 @@ pub const SMOOTH_F64: Tolerance = Tolerance(1e-30);
 pub const NORMAL_F64: Tolerance = Tolerance(2e-18);
 /// The same in f32; measured 5.3e-13.
 pub const NORMAL_F32: Tolerance = Tolerance(2e-12);
-/// Cost of a scan of n = kappa = 100, the corner of Table 1, where a search finds it; measured 4.0e-30.
+/// Cost of a scan of n = kappa = 100, the corner of Table 1, measured 4.0e-30.
 pub const METAL: Tolerance = Tolerance(3e-29);
-/// Root mean squared residual of ln f where it finds the dielectric of n = 3.86 instead; measured 3.3e-4.
-pub const METAL_LIKE: Tolerance = Tolerance(5e-4);
-/// Share of the searches that end there; measured 0.1.
-pub const METAL_MISSED: Tolerance = Tolerance(0.2);
 /// Relative error of the cost of samples that count twice; measured 2.3e-15.
 pub const TWICE: Tolerance = Tolerance(6e-15);
 /// Relative distance of ln f from the nearer lobe's exponent of 10^8 to 10^10, from the other factors; measured 1.9e-7.

@@ -4,6 +4,7 @@ use brdfit_core::brdf::{ALL, Brdf, NAMES, Params};
 use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample};
 use brdfit_core::joint::Joint;
 use brdfit_core::lm::{self, Bounds, Options, Problem};
+use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_suite::tolerance::{self, check};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -28,7 +29,7 @@ fn scan(params: &Params<f64>, random: &mut Xoshiro256PlusPlus) -> Vec<Block<f64>
         for theta_s in (-80..=80).step_by(4) {
             let sample = Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0);
             let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid directions");
-            let noise: f64 = (0..12).map(|_| random.next_u64() as f64 / 2f64.powi(64)).sum::<f64>() - 6.0;
+            let noise: f64 = (0..12).map(|_| f64::unit(random.next_u64())).sum::<f64>() - 6.0;
             let mut observation = Observation::new(&sample).expect("a valid sample");
             observation.ln_f = brdf.ln_f(&geometry) + 0.1 * noise;
             observations.push(observation);
@@ -50,7 +51,7 @@ fn errors_of_m(materials: [[f64; 6]; SCANS], shared: [bool; 6]) -> [f64; 2] {
         let options = Options::default();
         for s in 0..SCANS {
             let fit = lm::fit(&scans[s], &one, truth(s), &options);
-            separate += (fit.x[3] / materials[s][3] - 1.0).powi(2) / SCANS as f64;
+            separate += square(fit.x[3] / materials[s][3] - 1.0) / SCANS as f64;
         }
         let problem = Joint::new(&scans, shared);
         let fit = lm::fit(
@@ -59,9 +60,13 @@ fn errors_of_m(materials: [[f64; 6]; SCANS], shared: [bool; 6]) -> [f64; 2] {
             problem.join((0..SCANS).map(truth)),
             &options,
         );
-        joint += (problem.of(&fit.x, 0)[3] / materials[0][3] - 1.0).powi(2);
+        joint += square(problem.of(&fit.x, 0)[3] / materials[0][3] - 1.0);
     }
     [separate, joint].map(|sum| (sum / SEEDS as f64).sqrt())
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 const MATERIAL: [f64; 6] = [0.1, 10.0, 0.5, 0.2, 3.0, 1.0];

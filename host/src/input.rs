@@ -1,6 +1,6 @@
 //! Reads scans: from the bytes of a file to samples in radians and sr^-1, with their weights.
 //!
-//! A file goes through [`format`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
+//! A file goes through [`mod@format`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
 //! [`check`] makes samples of these: units, masks, validity, weights.
 //! Degrees and file formats exist here and in `simulate` only.
 

@@ -185,9 +185,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
     /// One number of each lobe and lane: lobe by lobe, the `G` lanes of [`Pack::gather`].
     #[inline(always)]
     fn facets<const K: usize, const G: usize, const L: usize>(rows: &[[R; L]; 2], lane: usize) -> Pack<R, K> {
-        Pack(core::array::from_fn(|k| {
-            rows[Self::FIRST_LOBE + k / G][lane + k % G * (L / G)]
-        }))
+        Pack::from_fn(|k| rows[Self::FIRST_LOBE + k / G][lane + k % G * (L / G)])
     }
 
     /// factor E / m^2 and F of each lobe and lane, with E = exp(-tan^2 theta_h / m^2 - shift).
@@ -198,7 +196,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         shift: Pack<R, G>,
         lane: usize,
     ) -> (Pack<R, K>, Fresnel<R, K>) {
-        let shift = Pack::<R, K>(core::array::from_fn(|k| shift.0[k % G]));
+        let shift = Pack::<R, K>::from_fn(|k| shift.0[k % G]);
         let exponent = Self::facets::<K, G, L>(&block.tan2_theta_h, lane) * -self.inverse_m2 - shift;
         let exponent = exponent.map(|x| x.min(R::LIFT));
         let beckmann = exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e });
@@ -220,7 +218,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
     ) -> Rows<R, G> {
         let shift = Pack::<R, G>::gather(&lift.shift, lane);
         let lift = Pack::<R, G>::gather(&lift.lift, lane);
-        let rho = Pack::<R, K>(core::array::from_fn(|k| self.rho[Self::FIRST_LOBE + k / G]));
+        let rho = Pack::<R, K>::from_fn(|k| self.rho[Self::FIRST_LOBE + k / G]);
         let (beam, fresnel) = self.beams::<K, G, L, GRADIENT>(block, shift, lane);
         let d_rho = beam * fresnel.f;
         let term = rho * d_rho;

@@ -118,8 +118,10 @@ impl<'a, R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usi
     #[inline(always)]
     fn rows<const GRADIENT: bool>(x: &[R; P], facets: &Facets<R>) -> (Lanes<R>, [Lanes<R>; P]) {
         let index = Index::new(x[4], x[5]);
-        let fresnel = [0, 1].map(|g| index.reflect::<LANES, GRADIENT>(facets.cos_theta_d[g]));
-        let lobes: [Lobe<R>; 3] = core::array::from_fn(|lobe| Self::lobe(facets, lobe, Self::slope(x, lobe)));
+        let reflect = |g: usize| index.reflect::<LANES, GRADIENT>(facets.cos_theta_d[g]);
+        let fresnel = [reflect(0), reflect(1)];
+        let lobe = |lobe: usize| Self::lobe(facets, lobe, Self::slope(x, lobe));
+        let lobes = [lobe(0), lobe(1), lobe(2)];
         let mut f = Pack::splat(x[0] / R::PI);
         for lobe in 0..Self::LOBES {
             let rho = Self::get(x, WEIGHT[lobe]).unwrap_or(R::ZERO);

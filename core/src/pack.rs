@@ -20,10 +20,19 @@ impl<R: Real, const K: usize> Pack<R, K> {
     pub fn splat(x: R) -> Self {
         Pack([x; K])
     }
+    /// The function of each place. (That of arrays in the standard library is a chain of functions that the compiler may leave as calls, which no vector instructions pass.)
+    #[inline(always)]
+    pub fn from_fn(f: impl Fn(usize) -> R) -> Self {
+        let mut all = [R::ZERO; K];
+        for (k, x) in all.iter_mut().enumerate() {
+            *x = f(k);
+        }
+        Pack(all)
+    }
     /// One of each `L / K` of a row, from `lane` on.
     #[inline(always)]
     pub fn gather<const L: usize>(row: &[R; L], lane: usize) -> Self {
-        Pack(core::array::from_fn(|k| row[lane + k * (L / K)]))
+        Self::from_fn(|k| row[lane + k * (L / K)])
     }
     /// Exponentials: [`Real::exp_pack`].
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Runs the passes over a scan on the widest vectors that the processor has; the bits do not depend on it.
 
+use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
@@ -47,17 +48,6 @@ impl Simd {
             Simd::V4(_) => "avx512",
         }
     }
-
-    #[inline(always)]
-    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
-        match self {
-            Simd::Portable => f.call(),
-            #[cfg(target_arch = "x86_64")]
-            Simd::V3(simd) => simd.vectorize(f),
-            #[cfg(target_arch = "x86_64")]
-            Simd::V4(simd) => simd.vectorize(f),
-        }
-    }
 }
 
 /// A scan whose passes use `simd`.
@@ -102,12 +92,28 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, 
     }
 }
 
+impl<R: Real, const TERMS: u8, const P: usize> FastScan<'_, R, TERMS, P> {
+    /// Single precision has wide vectors with all terms only: they would double the time to compile this crate, and instruments that fit in single precision run their own build.
+    const WIDE: bool = TERMS == ALL || size_of::<R>() == size_of::<f64>();
+
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(&self, pass: F) -> F::Output {
+        match self.simd {
+            #[cfg(target_arch = "x86_64")]
+            Simd::V3(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            _ => pass.call(),
+        }
+    }
+}
+
 impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R, TERMS, P> {
     fn cost(&self, x: &[R; P]) -> R {
-        self.simd.run(Cost(&self.scan, x))
+        self.run(Cost(&self.scan, x))
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        self.simd.run(Linearize(&self.scan, x))
+        self.run(Linearize(&self.scan, x))
     }
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         self.scan.bend(x, step, to)
@@ -116,6 +122,6 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.simd.run(Propose(&self.scan, bounds, seed, i, like))
+        self.run(Propose(&self.scan, bounds, seed, i, like))
     }
 }

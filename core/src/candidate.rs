@@ -11,8 +11,21 @@ use crate::start;
 
 impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS, P> {
     /// Candidate `i`: m, n and kappa spread evenly over the logarithm of their ranges, then the weights that fit best.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
+        self.inlined_candidate(bounds, seed, i, like)
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+    /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn inlined_candidate(
+        &self,
+        bounds: &Bounds<R, P>,
+        seed: u64,
+        i: u64,
+        like: Option<&[R; P]>,
+    ) -> Candidate<R, P> {
         let mut x = bounds.lower;
         let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
         spread(&mut x, bounds, seed, i, self.finest, [place(3), place(4), place(5)]);
@@ -29,9 +42,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for Scan<'_, R, TERMS
             rank,
         }
     }
-}
 
-impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     /// Sets rho_d, rho_s and rho_v to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn set_weights<const K: usize>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) -> R {

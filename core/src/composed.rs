@@ -171,7 +171,6 @@ impl<'a, R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usi
 impl<R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize> Problem<R, P>
     for Composed<'_, R, D, M, EXTRAS, P>
 {
-    #[inline(always)]
     fn cost(&self, x: &[R; P]) -> R {
         let mut squares = Pack::splat(R::ZERO);
         for facets in self.facets {
@@ -194,7 +193,6 @@ impl<R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize> 
         )
     }
 
-    #[inline(always)]
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let zero = Pack::splat(R::ZERO);
         let mut squares = zero;
@@ -223,7 +221,6 @@ impl<R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize> 
     for Composed<'_, R, D, M, EXTRAS, P>
 {
     /// Candidate `i`: slopes, n and kappa spread over the logarithm of their ranges, then the weights that fit best.
-    #[inline(always)]
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         let mut x = bounds.lower;
         spread(&mut x, bounds, seed, i, self.finest, [Some(3), Some(4), Some(5)]);
@@ -253,7 +250,6 @@ impl<R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize> 
 
 impl<R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize> Composed<'_, R, D, M, EXTRAS, P> {
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and returns its rank; one pass.
-    #[inline(always)]
     fn set_weights(&self, x: &mut [R; P], bounds: &Bounds<R, P>) -> R {
         const COLUMNS: [usize; 4] = [0, WEIGHT[0], WEIGHT[1], WEIGHT[2]];
         let zero = Pack::splat(R::ZERO);

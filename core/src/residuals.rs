@@ -134,8 +134,25 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
 }
 
 impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
-    #[cfg_attr(not(target_os = "none"), inline(always))]
     fn cost(&self, x: &[R; P]) -> R {
+        self.inlined_cost(x)
+    }
+
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        let weights = [(place(1), 0), (place(2), 1)];
+        bend(x, step, to, place(4), place(5), weights, self.peaks)
+    }
+
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        self.inlined_linearize(x)
+    }
+}
+
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+    /// [`Problem::cost`], compiled into its caller, for the vector instructions that the caller may use.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
             return self.cost_alone(x);
         }
@@ -146,14 +163,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
         }
     }
 
-    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        let weights = [(place(1), 0), (place(2), 1)];
-        bend(x, step, to, place(4), place(5), weights, self.peaks)
-    }
-
+    /// [`Problem::linearize`], compiled into its caller.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+    pub fn inlined_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         if ALONE {
             return self.linearize_alone(x);
         }
@@ -163,9 +175,7 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
             _ => self.linearize_of::<{ 2 * GROUP }>(x),
         }
     }
-}
 
-impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn cost_of<const K: usize>(&self, x: &[R; P]) -> R {
         let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));

@@ -64,7 +64,7 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TER
     type Output = R;
     #[inline(always)]
     fn call(self) -> R {
-        self.0.cost(self.1)
+        self.0.inlined_cost(self.1)
     }
 }
 
@@ -73,7 +73,7 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R
     type Output = Linearization<R, P>;
     #[inline(always)]
     fn call(self) -> Linearization<R, P> {
-        self.0.linearize(self.1)
+        self.0.inlined_linearize(self.1)
     }
 }
 
@@ -88,7 +88,7 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, 
     type Output = Candidate<R, P>;
     #[inline(always)]
     fn call(self) -> Candidate<R, P> {
-        self.0.candidate(self.1, self.2, self.3, self.4)
+        self.0.inlined_candidate(self.1, self.2, self.3, self.4)
     }
 }
 

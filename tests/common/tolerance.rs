@@ -211,3 +211,49 @@ pub const LOBES_FIT: Tolerance = Tolerance(1e-28);
 /// Relative distance of the gain in the error of m by three scans from the root of 3.
 pub const JOINT_GAIN: Tolerance = Tolerance(0.05);
 pub const ZEMAX_AVERAGED: Tolerance = Tolerance(0.1);
+
+// The program's results.
+
+/// Standard error of m from a scan without noise, as printed; measured 1.1e-18.
+pub const IDEAL_STDERR: Tolerance = Tolerance(5e-18);
+/// An angle in degrees after radians and back; measured 3.6e-15.
+pub const DEGREES: Tolerance = Tolerance(1e-14);
+/// Largest relative error of a parameter from a scan without noise; measured 1.2e-13.
+pub const IDEAL_PRINTED: Tolerance = Tolerance(5e-13);
+/// Root of the mean squared residual of ln f of the same; measured 2.2e-16.
+pub const IDEAL_RMS: Tolerance = Tolerance(1e-15);
+/// Relative error of rho_d of the same in f32; measured 1.5e-8.
+pub const IDEAL_F32: Tolerance = Tolerance(5e-8);
+/// Root of the mean squared residual of scans with 5 % of noise or less, piped from one command to another; measured 0.0265.
+pub const PIPED_RMS: Tolerance = Tolerance(0.03);
+/// A factor of noise beyond its range; rounding of the quotient it is known by.
+pub const PRINTED: Tolerance = Tolerance(1e-15);
+/// Largest relative error of a parameter from a scan whose noise the weights make up for; measured 1.8e-10.
+pub const WEIGHTED: Tolerance = Tolerance(1e-9);
+/// Relative difference between a genuine ASTM file and a table of six digits that others made of it; measured 3.5e-6.
+pub const GARNET_TABLE: Tolerance = Tolerance(5e-6);
+/// The same of a LUMOS file; measured 0.
+pub const LUMOS_TABLE: Tolerance = Tolerance(1e-15);
+
+// What a scan tells.
+
+/// Quantile of Student's t less that of printed tables; measured 4.9e-9.
+pub const STUDENT: Tolerance = Tolerance(1e-8);
+/// How much less the cost has risen at an interval's end, by a search with another seed, than it should; relative; measured 1.9e-4.
+pub const INTERVAL_BELOW: Tolerance = Tolerance(3e-4);
+/// How much less than a point of a profile a search finds there; relative; measured 1.1e-15.
+pub const PROFILE_POINT: Tolerance = Tolerance(5e-15);
+/// Size of a simulated noise against the one asked for, of 2000 samples; relative; measured 0.0080.
+pub const NOISE_SIZE: Tolerance = Tolerance(0.02);
+/// AICc and BIC against their formulas; relative; measured 0.
+pub const CRITERION: Tolerance = Tolerance(1e-15);
+/// F against the quantile at its own probability; measured 9.4e-13.
+pub const F_TEST: Tolerance = Tolerance(5e-12);
+/// Peak and width of a lobe in degrees, against a table in steps of 0.001; measured 4.7e-4.
+pub const LOBE_ANGLES: Tolerance = Tolerance(1e-3);
+/// BRDF at the peak against the largest of that table; relative; measured 1.6e-9.
+pub const LOBE_PEAK: Tolerance = Tolerance(5e-9);
+/// Standard errors of peak and width against those from differences in that table; relative; measured 0.0093.
+pub const LOBE_STDERR: Tolerance = Tolerance(0.02);
+/// Reflectance of a grey surface, and its standard error; measured 5.6e-17.
+pub const GREY: Tolerance = Tolerance(3e-16);

@@ -101,22 +101,24 @@ pub(crate) fn spread<R: Real, const P: usize>(
     places: [Option<usize>; 3],
 ) {
     let u = start::even::<R, 3>(seed, i);
-    let [m, n, kappa2] = places.map(|place| place.filter(|&k| k < P));
-    if let Some(k) = m {
+    let [m, n, kappa2] = places;
+    // So the compiler sees that no index is out of range.
+    let within = |place: Option<usize>| place.filter(|&k| k < P);
+    if let Some(k) = within(m) {
         x[k] = log_between(
             bounds.lower[k].max(finest).min(bounds.upper[k]),
             bounds.upper[k].min(R::of(3.0)).max(bounds.lower[k]),
             u[0],
         );
     }
-    if let Some(k) = n {
+    if let Some(k) = within(n) {
         x[k] = log_between(
             bounds.lower[k],
             bounds.upper[k].min(R::of(10.0)).max(bounds.lower[k]),
             u[1],
         );
     }
-    if let Some(k) = kappa2 {
+    if let Some(k) = within(kappa2) {
         // A third of them without absorption, the others with kappa from 0.03 to 10.
         let third = R::of(1.0 / 3.0);
         x[k] = if u[2] < third {

@@ -69,14 +69,10 @@ impl<'a, R: Real, D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usi
     /// The scan whose observations are in `facets`.
     pub fn new(facets: &'a [Facets<R>]) -> Self {
         let () = Self::MATCHES;
-        let rows = |lobe: usize| {
-            facets.iter().flat_map(move |f| {
-                (0..LANES)
-                    .filter(|&lane| f.weight.0[lane] > R::ZERO)
-                    .map(move |lane| (f.tan2_theta_h[lobe].0[lane], f.cos_theta_d[lobe].0[lane]))
-            })
-        };
-        let (finest, peaks) = finest_slope([rows(0), rows(1)]);
+        let (finest, peaks) = finest_slope(facets.len() * LANES, |lobe, i| {
+            let (f, lane) = (facets.get(i / LANES)?, i % LANES);
+            (f.weight.0[lane] > R::ZERO).then(|| (f.tan2_theta_h[lobe].0[lane], f.cos_theta_d[lobe].0[lane]))
+        });
         Composed {
             facets,
             peaks,

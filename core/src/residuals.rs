@@ -26,14 +26,12 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
     /// The scan whose observations are in `blocks`.
     pub fn new(blocks: &'a [Block<R>]) -> Self {
         let () = Self::MATCHES;
-        let rows = |lobe: usize| {
-            blocks.iter().flat_map(move |block| {
-                (0..LANES)
-                    .filter(|&lane| block.weight[lane] > R::ZERO)
-                    .map(move |lane| (block.tan2_theta_h[lobe][lane], block.cos_theta_d[lobe][lane]))
-            })
-        };
-        let (finest, peaks) = finest_slope([rows(0), rows(1)]);
+        let (finest, peaks) = finest_slope(blocks.len() * LANES, |lobe, i| {
+            let block = blocks.get(i / LANES)?;
+            // So the compiler sees that no index is out of range.
+            let (lobe, lane) = (lobe % 2, i % LANES);
+            (block.weight[lane] > R::ZERO).then(|| (block.tan2_theta_h[lobe][lane], block.cos_theta_d[lobe][lane]))
+        });
         Scan { blocks, peaks, finest }
     }
 
@@ -240,16 +238,16 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     }
 }
 
-/// The least m that a few samples still see, dimensionless, and cos theta_d nearest to the peak of each lobe; from (tan^2 theta_h, cos theta_d) of every sample.
-pub(crate) fn finest_slope<R: Real>(lobes: [impl Iterator<Item = (R, R)>; 2]) -> (R, Pack<R, 2>) {
+/// The least m that a few samples still see, dimensionless, and cos theta_d nearest to the peak of each lobe; from (tan^2 theta_h, cos theta_d) by lobe and row, for those rows that have any.
+pub(crate) fn finest_slope<R: Real>(rows: usize, row: impl Fn(usize, usize) -> Option<(R, R)>) -> (R, Pack<R, 2>) {
     let mut peaks = Pack::splat(R::ONE);
     let mut finest = R::MAX;
-    for (lobe, rows) in lobes.into_iter().enumerate() {
+    for (lobe, peak) in peaks.0.iter_mut().enumerate() {
         // The three smallest tan^2 theta_h.
         let mut nearest = [R::MAX; 3];
-        for (mut tan2, cos_theta_d) in rows {
+        for (mut tan2, cos_theta_d) in (0..rows).filter_map(|i| row(lobe, i)) {
             if tan2 < nearest[0] {
-                peaks.0[lobe] = cos_theta_d;
+                *peak = cos_theta_d;
             }
             for place in &mut nearest {
                 if tan2 < *place {
@@ -321,6 +319,8 @@ pub(crate) fn bend<R: Real, const P: usize>(
     let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
     let d_n2 = R::of(2.0) * old_n * d_n;
     for (place, lobe) in weights {
+        // So the compiler sees that no index is out of range.
+        let lobe = lobe % 2;
         let Some(rho) = place.and_then(|k| bent.get_mut(k)) else {
             continue;
         };

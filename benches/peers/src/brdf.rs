@@ -178,7 +178,7 @@ fn text(table: &[(String, Vec<Measured>)], ours: &[(Measured, f64)], starts: usi
         "Processor: {}; the shares and evaluations depend on it little, the times do.",
         processor()
     );
-    out += "Regenerate, all in one run: `benches/peers/run brdf 500 > benches/results/peers.md`.\n\n";
+    out += "Regenerate, all in one run: `benches/peers/run brdf 100 > benches/results/peers.md`.\n\n";
     out += "| solver | test data | share | time of a start, ms | evaluations of a start | expected time, ms | over brdfit's | expected evaluations | over brdfit's |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|\n";
     for (set, (mine, _)) in ours.iter().enumerate() {
         let _ = writeln!(

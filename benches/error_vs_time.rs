@@ -8,10 +8,10 @@ use std::fmt::Write;
 use std::process::Command;
 use std::time::Instant;
 
-use brdfit::converge::trace::{Trace, passes, trace};
 use brdfit::converge::{Subject, paper_scans};
+use brdfit::engine::simd::{FastScan, Simd};
+use brdfit::engine::trace::{Trace, passes, trace};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
-use brdfit::simd::{FastScan, Simd};
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;

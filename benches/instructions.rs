@@ -6,8 +6,8 @@ use std::hint::black_box;
 use std::process::Command;
 
 use brdfit::converge::paper_scans;
+use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
-use brdfit::simd::{FastScan, Simd};
 use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;

@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use brdfit::converge::{Subject, paper_scans};
+use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::{FitOptions, blocks};
-use brdfit::simd::{FastScan, Simd};
 use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;

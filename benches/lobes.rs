@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use brdfit::compare::models::{Fitted, MODELS};
+use brdfit::engine::models::{Fitted, MODELS};
 use brdfit::input::{ReadOptions, read_file};
 
 fn main() {

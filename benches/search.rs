@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use brdfit::converge::{Subject, paper_scans};
+use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
-use brdfit::simd::{FastScan, Simd};
 use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{self, Options};
 use brdfit_core::residuals::Scan;

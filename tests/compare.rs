@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use brdfit::compare::models::MODELS;
+use brdfit::engine::models::MODELS;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_suite::program::brdfit;

@@ -1,8 +1,8 @@
 //! The same bits with any number of threads, any vector instructions, and every time.
 
+use brdfit::engine::ln_f;
+use brdfit::engine::simd::Simd;
 use brdfit::engine::{FitOptions, Method, Outcome, Precision, fit};
-use brdfit::report::ln_f;
-use brdfit::simd::Simd;
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;

@@ -2,7 +2,6 @@
 
 use brdfit::engine::{self, FitOptions, Outcome};
 use brdfit::input::{self, Measurement, ReadOptions};
-use brdfit::report;
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_suite::scan::{data, left_out, shared};
 use brdfit_suite::tolerance::{self, check};
@@ -25,7 +24,7 @@ fn fit(samples: &[Sample<f64>], robust: bool) -> Outcome {
 fn apart(samples: &[Sample<f64>], a: &Outcome, b: &Outcome) -> f64 {
     let squares = samples.iter().map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-        let difference = report::ln_f(&a.params, &geometry) - report::ln_f(&b.params, &geometry);
+        let difference = engine::ln_f(&a.params, &geometry) - engine::ln_f(&b.params, &geometry);
         difference * difference
     });
     (squares.sum::<f64>() / samples.len() as f64).sqrt()

@@ -20,12 +20,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::{Ended, Streams};
 use crate::engine::FitOptions;
+use crate::engine::simd::Simd;
 use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::replace_with;
-use crate::simd::Simd;
 use journal::Journal;
 use record::{Head, Record};
 use results::Form;

@@ -8,7 +8,6 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 use crate::engine::{self, FitError, FitOptions, Outcome};
-use crate::report;
 
 /// Random numbers of copy `copy` of `seed`: a function of both alone, whatever thread draws them.
 #[derive(Clone, Debug)]
@@ -40,7 +39,7 @@ pub fn copy(samples: &[Sample<f64>], params: &Params<f64>, scale: f64, noise: &m
     const LARGEST_LN: f64 = 700.0;
     let one = |sample: &Sample<f64>| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi);
-        let ln_f = geometry.map_or(0.0, |geometry| report::ln_f(params, &geometry));
+        let ln_f = geometry.map_or(0.0, |geometry| engine::ln_f(params, &geometry));
         let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
         let ln_f = ln_f + scale / weight * noise.normal();
         Sample {

@@ -6,9 +6,9 @@ use brdfit_core::real::Real;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use crate::engine::robust;
 use crate::engine::{self, FitError, FitOptions, Outcome, Precision};
 use crate::options::term_names;
-use crate::robust;
 use crate::uncertainty::text::short;
 
 /// The sets in order of size, each with the one that it is tested against.

@@ -1,19 +1,16 @@
 //! `brdfit compare`: which model a scan needs.
 
-pub mod models;
-
 use std::path::PathBuf;
 
-use brdfit_core::real::Real;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use crate::cli::Streams;
+use crate::engine::models::{Fitted, MODELS, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{deliver, replace_file, shortest};
 use crate::plot;
-use models::{Fitted, MODELS, Model};
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
 #[derive(Args, Debug)]
@@ -90,29 +87,6 @@ fn compare(models: &[Model], measurement: &Measurement, seed: u64) -> Result<Vec
     let each = fits.into_iter();
     each.map(|fit| fit.map_err(|error| input::explain(measurement, error)))
         .collect()
-}
-
-impl Fitted {
-    /// Eq. 17.
-    pub fn mse2(&self) -> f64 {
-        self.cost / (self.samples * self.samples) as f64
-    }
-
-    /// Root of the mean squared residual of ln f.
-    pub fn rms_ln(&self) -> f64 {
-        (self.cost / self.samples as f64).sqrt()
-    }
-
-    /// Akaike's criterion with Hurvich and Tsai's correction, the variance of the residuals counted as a parameter; infinite with too few samples.
-    pub fn aicc(&self) -> f64 {
-        let (samples, k) = (self.samples as f64, self.parameters.len() as f64 + 1.0);
-        let room = samples - k - 1.0;
-        if room > 0.0 {
-            samples * Real::ln(self.cost / samples) + 2.0 * k + 2.0 * k * (k + 1.0) / room
-        } else {
-            f64::INFINITY
-        }
-    }
 }
 
 fn least_aicc(fits: &[Fitted]) -> f64 {

@@ -2,7 +2,6 @@
 
 mod report;
 pub mod study;
-pub mod trace;
 
 use std::path::PathBuf;
 use std::time::Duration;

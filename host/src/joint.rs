@@ -2,29 +2,16 @@
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::{ALL, NAMES};
-use brdfit_core::geometry::Block;
-use brdfit_core::joint::Joint;
-use brdfit_core::lm::{self, Options};
-use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
-use brdfit_core::search::{CANDIDATES, search};
-use brdfit_core::uncertainty::Uncertainty;
+use brdfit_core::brdf::NAMES;
+use brdfit_core::geometry::Sample;
+use brdfit_engine::joint::{Fitted, SCANS, fit};
 use clap::{Args, ValueEnum};
-use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use crate::cli::Streams;
-use crate::engine::{FitOptions, blocks};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{deliver, shortest};
-use crate::simd::{FastScan, Simd};
-
-/// Scans at most.
-pub const SCANS: usize = 8;
-/// Coordinates at most: with every parameter each scan's own.
-const COORDINATES: usize = 6 * SCANS;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]
@@ -55,23 +42,6 @@ enum Format {
     Json,
 }
 
-/// A fit of several scans.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
-    /// Which of [`NAMES`] are shared.
-    pub shared: [bool; 6],
-    /// Parameters of each scan, with their standard errors (none on a bound, or if undetermined).
-    pub scans: Vec<[(f64, Option<f64>); 6]>,
-    /// Sum of squared residuals of ln f over all scans.
-    pub cost: f64,
-    /// The same of fits of each scan on its own.
-    pub separate: f64,
-    /// Samples of all scans.
-    pub samples: usize,
-    /// Parameters that are free.
-    pub parameters: usize,
-}
-
 /// Runs the subcommand.
 ///
 /// # Errors
@@ -85,7 +55,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
                 .help(format!("give 2 to {SCANS} scans")),
         );
     }
-    let fitted = fit(&measurements, shared, arguments.seed)?;
+    let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
+    let fitted =
+        fit(&samples, shared, arguments.seed).map_err(|(place, error)| input::explain(&measurements[place], error))?;
     let text = match arguments.format {
         Format::Text => text(&measurements, &fitted),
         Format::Json => json(&measurements, &fitted),
@@ -106,82 +78,6 @@ fn shared(list: &str) -> Result<[bool; 6], Error> {
         shared[index] = true;
     }
     Ok(shared)
-}
-
-/// Fits each scan on its own, then all together: from the mean of the shared parameters, and from those of each scan; the best counts.
-///
-/// # Errors
-/// A scan that can not be fitted.
-pub fn fit(measurements: &[Measurement], shared: [bool; 6], seed: u64) -> Result<Fitted, Error> {
-    let mut all: Vec<Vec<Block<f64>>> = Vec::new();
-    for measurement in measurements {
-        all.push(blocks(&measurement.samples).map_err(|error| input::explain(measurement, error))?);
-    }
-    let simd = Simd::best();
-    let each = all.iter().map(|blocks| FastScan {
-        scan: Scan::<f64, ALL, 6>::new(blocks),
-        simd,
-    });
-    let scans: Vec<_> = each.collect();
-    let defaults = FitOptions::default();
-    let one = Scan::<f64, ALL, 6>::bounds(&defaults.lower, &defaults.upper);
-    let options = Options::default();
-    let separate: Vec<([f64; 6], f64)> = scans
-        .par_iter()
-        .map(|scan| {
-            let found = search(scan, &one, seed, CANDIDATES, &options);
-            let best = found.minima.best().expect("a search makes at least one fit");
-            (best.x, best.cost)
-        })
-        .collect();
-    let problem = Joint::new(&scans, shared);
-    let bounds = problem.bounds::<f64, COORDINATES>(&one);
-    let mean: [f64; COORDINATES] = problem.join(separate.iter().map(|fit| fit.0));
-    let of_each = separate.iter().map(|(x, _)| {
-        let mut start = mean;
-        for index in (0..6).filter(|&index| shared[index]) {
-            start[problem.place(0, index)] = x[index];
-        }
-        start
-    });
-    let starts: Vec<_> = std::iter::once(mean).chain(of_each).collect();
-    let fits = starts
-        .into_par_iter()
-        .map(|start| lm::fit(&problem, &bounds, start, &options));
-    let fits: Vec<_> = fits.collect();
-    let best = fits
-        .into_iter()
-        .min_by(|a, b| a.at.cost.total_cmp(&b.at.cost))
-        .expect("there are starts");
-    let samples = measurements.iter().flat_map(|one| &one.samples);
-    let samples = samples.filter(|sample| sample.weight != 0.0).count();
-    let uncertainty = Uncertainty::new(&best.at, &best.x, &bounds, samples);
-    let parameter = |s: usize, index: usize| {
-        let place = problem.place(s, index);
-        let value = best.x[place];
-        let free = bounds.lower[place] < value && value < bounds.upper[place];
-        let error = free
-            .then(|| uncertainty.held.standard_error(place))
-            .filter(|error| error.is_finite());
-        match NAMES[index] {
-            // The solver has kappa^2.
-            "kappa" => {
-                let kappa = Real::sqrt(value);
-                (kappa, error.map(|error| error / (2.0 * kappa)))
-            }
-            _ => (value, error),
-        }
-    };
-    Ok(Fitted {
-        shared,
-        scans: (0..scans.len())
-            .map(|s| std::array::from_fn(|index| parameter(s, index)))
-            .collect(),
-        cost: best.at.cost,
-        separate: separate.iter().map(|fit| fit.1).sum(),
-        samples,
-        parameters: problem.coordinates(),
-    })
 }
 
 fn text(measurements: &[Measurement], fitted: &Fitted) -> String {

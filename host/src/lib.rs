@@ -1,8 +1,10 @@
 //! Finds the parameters of microfacet BRDF models from scatterometer scans.
 //!
-//! The mathematics is in [`brdfit_core`]; this crate reads files, chooses what to run, and reports.
+//! The mathematics is in [`brdfit_core`], the searches are compiled in [`engine`]; this crate reads files, chooses what to run, and reports.
 //!
 //! A file becomes one or more [`input::Measurement`]s, that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
+
+pub use brdfit_engine as engine;
 
 pub mod batch;
 pub mod bootstrap;
@@ -11,7 +13,6 @@ pub mod cli;
 pub mod compare;
 pub mod converge;
 pub mod derived;
-pub mod engine;
 pub mod error;
 pub mod export;
 pub mod fit;
@@ -26,9 +27,7 @@ pub mod plot;
 pub mod profile;
 pub mod reflectance;
 pub mod report;
-pub mod robust;
 pub mod shell;
-pub mod simd;
 pub mod simulate;
 pub mod stability;
 pub mod uncertainty;

@@ -3,14 +3,14 @@
 use std::fmt::Write;
 use std::time::Duration;
 
-use brdfit_core::brdf::{ALL, Brdf, NAMES, Params, has};
+use brdfit_core::brdf::{NAMES, Params, has};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::Stop;
 use serde::Serialize;
 
 use crate::choose::{self, Choice};
 use crate::derived::{self, Derived};
-use crate::engine::{FitOptions, Method, Minimum, Outcome, Precision};
+use crate::engine::{self, FitOptions, Method, Minimum, Outcome, Precision};
 use crate::input::{LeftOut, Measurement, ReadAs, left_out};
 use crate::options::term_names;
 use crate::output::shortest;
@@ -86,13 +86,6 @@ fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample
     (samples, left_out)
 }
 
-/// ln f of the model with any set of terms, f in sr^-1; `params` are as a fit reports them, with 0 for what is absent.
-pub fn ln_f(params: &Params<f64>, geometry: &Geometry<f64>) -> f64 {
-    // Without lobes m is reported as 0, by which the model would divide.
-    let m = if params.m > 0.0 { params.m } else { 1.0 };
-    Brdf::<f64, ALL>::new(&Params { m, ..*params }).ln_f(geometry)
-}
-
 fn by_angle(samples: &[Sample<f64>], params: &Params<f64>) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
@@ -100,7 +93,7 @@ fn by_angle(samples: &[Sample<f64>], params: &Params<f64>) -> Vec<AngleOfInciden
     let one = |group: &[&Sample<f64>]| {
         let squares = group.iter().filter_map(|sample| {
             let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-            let residual = sample.weight * (ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf));
+            let residual = sample.weight * (engine::ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf));
             Some(residual * residual)
         });
         AngleOfIncidence {

@@ -13,7 +13,7 @@ use crate::cli::Streams;
 use crate::error::{Error, shown};
 use crate::input::azimuth;
 use crate::output::{deliver, shortest};
-use crate::{options, report};
+use crate::{engine, options};
 
 /// Computes the BRDF at given angles and parameters
 #[derive(Args, Debug)]
@@ -149,7 +149,7 @@ fn value_at(params: &Params<f64>, degrees: [f64; 3], factor: f64, ln: bool) -> R
     let geometry = Geometry::new(angle_i.to_radians(), angle_s.to_radians(), azimuth(phi)).map_err(|error| {
         Error::new(format!("{error} at {at} degrees")).help("take 0 <= theta_i < 90 and -90 < theta_s < 90")
     })?;
-    let ln_f = report::ln_f(params, &geometry);
+    let ln_f = engine::ln_f(params, &geometry);
     if ln {
         return Ok(if factor == 1.0 { ln_f } else { ln_f + Real::ln(factor) });
     }

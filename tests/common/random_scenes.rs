@@ -1,6 +1,6 @@
 //! Random scans of many kinds, and a brute-force search to judge others by.
 
-use brdfit::simd::FastScan;
+use brdfit::engine::simd::FastScan;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use brdfit::converge::trace::{Trace, passes, trace};
+use brdfit::engine::trace::{Trace, passes, trace};
 use brdfit::converge::{Subject, paper_scans};
 use brdfit::engine::FitOptions;
 use brdfit_core::lm::Bounds;

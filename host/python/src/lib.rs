@@ -7,7 +7,7 @@ mod settings;
 
 use brdfit::engine::{self, FitError, FitOptions, Method, Outcome};
 use brdfit::input::azimuth;
-use brdfit::{options, report};
+use brdfit::options;
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Geometry;
 use brdfit_core::lm::Stop;
@@ -198,7 +198,7 @@ fn brdf<'py>(
         for (k, value) in x.into_iter().enumerate() {
             options::check(k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
         }
-        let ln_f = report::ln_f(&Params::from_array(x), &geometry);
+        let ln_f = engine::ln_f(&Params::from_array(x), &geometry);
         // Below this the exponential is no normal number.
         const LEAST_LN: f64 = -708.0;
         Ok(match ln {

@@ -7,9 +7,10 @@ use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use serde::Serialize;
 
-use super::trace::{Record, Trace, passes, trace};
+use crate::engine::ln_f;
+use crate::engine::trace::{Record, Trace, passes, trace};
 use crate::engine::{FitError, FitOptions, Method, Precision};
-use crate::report::{ln_f, method_name};
+use crate::report::method_name;
 
 /// What is compared.
 pub const METHODS: [(Method, Precision); 4] = [

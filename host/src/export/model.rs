@@ -5,9 +5,9 @@ use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
 use serde_json::Value;
 
+use crate::engine::ln_f;
 use crate::error::Error;
 use crate::options;
-use crate::report::ln_f;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,13 +5,13 @@ use brdfit_core::geometry::Sample;
 
 use super::provenance::Source;
 use crate::derived::{self, Value};
+use crate::engine::robust;
 use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
 use crate::error::Error;
 use crate::fit::fit;
 use crate::input::{self, Measurement};
 use crate::plot;
 use crate::report::Report;
-use crate::robust;
 
 /// The albedo is drawn up to this angle of incidence, degrees, in steps of two.
 const STEEPEST: u32 = 88;

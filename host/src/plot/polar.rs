@@ -10,7 +10,7 @@ use brdfit_core::real::Real;
 use super::axis::{log10, plain};
 use super::residuals::{by_angle, signed_theta_s};
 use super::{POINTS, degrees, svg};
-use crate::report::ln_f;
+use crate::engine::ln_f;
 
 /// Okabe and Ito's colours, which the colour-blind tell apart too.
 const COLOURS: [&str; 6] = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];

@@ -8,7 +8,7 @@ use brdfit_core::real::Real;
 
 use super::axis::Axis;
 use super::{BOTTOM, CAPTION, GAP, LEFT, PANELS, POINTS, RIGHT, WIDTH, degrees, frame, svg};
-use crate::report::ln_f;
+use crate::engine::ln_f;
 
 const TOP: f64 = 10.0;
 

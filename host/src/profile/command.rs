@@ -10,12 +10,12 @@ use super::{Profile, json, profile, text};
 use crate::bootstrap::bootstrap;
 use crate::choose;
 use crate::cli::Streams;
-use crate::engine::{FitError, FitOptions, Outcome};
+use crate::engine::{FitError, FitOptions, Outcome, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::{SearchArguments, term_names};
 use crate::output::{deliver, replace_file};
-use crate::{plot, robust};
+use crate::plot;
 
 /// Shows which values of a parameter a scan allows: the cost over it, minimised over the others
 #[derive(Args, Debug)]

@@ -168,7 +168,7 @@ fn sum_of_squares(a: &[f64], b: &[f64]) -> f64 {
 
 fn ln_f(params: &Params<f64>, sample: &Sample<f64>) -> f64 {
     Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)
-        .map_or(f64::NAN, |geometry| report::ln_f(params, &geometry))
+        .map_or(f64::NAN, |geometry| engine::ln_f(params, &geometry))
 }
 
 /// Columns of J of the parameters of `terms` that are inside their bounds and change the curve at all.

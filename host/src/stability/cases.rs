@@ -6,8 +6,8 @@ use brdfit_core::real::Real;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
+use crate::engine;
 use crate::paper::embedded;
-use crate::report;
 
 /// Relative noise of the generated scenes, uniform within +- this.
 const NOISE: f64 = 0.01;
@@ -124,7 +124,7 @@ fn generate(scene: &Scene) -> Vec<Sample<f64>> {
         let (theta_i, theta_s) = (scene.theta_i_deg.to_radians(), degrees.to_radians());
         let geometry = Geometry::new(theta_i, theta_s, f64::PI).ok()?;
         let factor = 1.0 + NOISE * (2.0 * f64::unit(noise.next_u64()) - 1.0);
-        let brdf = Real::exp(report::ln_f(&params, &geometry)) * factor;
+        let brdf = Real::exp(engine::ln_f(&params, &geometry)) * factor;
         Some(Sample::in_plane(theta_i, theta_s, brdf))
     };
     degrees.into_iter().filter_map(&mut sample).collect()

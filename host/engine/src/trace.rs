@@ -11,8 +11,9 @@ use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, Candidate, Evaluations, Scene};
 
-use crate::engine::{self, FitError, FitOptions, Method, Precision, WithTerms};
+use crate::search::{WithTerms, with_terms};
 use crate::simd::FastScan;
+use crate::{FitError, FitOptions, Method, Precision, blocks};
 
 /// An improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,8 +52,8 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// [`FitError`].
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
     match options.precision {
-        Precision::F64 => engine::with_terms(options.terms, Watch::<f64>(samples, options, PhantomData))?,
-        Precision::F32 => engine::with_terms(options.terms, Watch::<f32>(samples, options, PhantomData))?,
+        Precision::F64 => with_terms(options.terms, Watch::<f64>(samples, options, PhantomData))?,
+        Precision::F32 => with_terms(options.terms, Watch::<f32>(samples, options, PhantomData))?,
     }
 }
 
@@ -71,7 +72,7 @@ fn watch<R: Real, const TERMS: u8, const P: usize>(
     if samples.len() < P {
         return Err(FitError::TooFew(samples.len(), P));
     }
-    let blocks = engine::blocks::<R>(samples)?;
+    let blocks = blocks::<R>(samples)?;
     let to_real = |p: &Params<f64>| Params::from_array(p.to_array().map(R::of));
     let bounds = Scan::<R, TERMS, P>::bounds(&to_real(&options.lower), &to_real(&options.upper));
     let (lm, starts) = (Options::default(), options.starts());
@@ -100,7 +101,7 @@ fn watch<R: Real, const TERMS: u8, const P: usize>(
     let elapsed_s = begun.elapsed().as_secs_f64();
     let seen = watched.seen.into_inner();
 
-    let blocks = engine::blocks::<f64>(samples)?;
+    let blocks = crate::blocks::<f64>(samples)?;
     let exact = FastScan {
         scan: Scan::<f64, TERMS, P>::new(&blocks),
         simd: options.simd,

@@ -1,186 +1,19 @@
-//! Fits one scan: chooses the compiled set of terms and the instructions, runs the search.
+//! Chooses the compiled set of terms and the instructions, and runs the search.
 
 use std::marker::PhantomData;
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, Params, SURFACE, VOLUME, has, slot};
-use brdfit_core::geometry::{Block, LANES, Observation, Sample, SampleError};
+use brdfit_core::geometry::{Block, LANES, Observation, Sample};
 use brdfit_core::lm::{self, Bounds, Options, Stop};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::{self, CANDIDATES, Evaluations, Found, PAPER_STARTS};
+use brdfit_core::search::{self, Found};
 use rayon::prelude::*;
 
-use crate::robust::{self, Robust};
-use crate::simd::{FastScan, Simd};
-use crate::uncertainty::{self, Uncertainty};
-
-/// How the global optimum is searched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Candidates, short fits, convergence of the best.
-    Default,
-    /// Uniform starts over the bounds, each fitted to convergence (section 3 of the paper).
-    Paper,
-}
-
-/// The number type of a fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// Double.
-    F64,
-    /// Single, as firmware does.
-    F32,
-}
-
-/// What to fit and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FitOptions {
-    /// How to search.
-    pub method: Method,
-    /// Seed of the starts.
-    pub seed: u64,
-    /// Number of starts (`paper`) or candidates (`default`); `None` for the method's own.
-    pub starts: Option<u32>,
-    /// One of [`TERM_SETS`].
-    pub terms: u8,
-    /// Let the scan choose among the sets of [`crate::choose`] in place of `terms`; [`fit`] does not look at it, [`crate::choose::fit`] does.
-    pub choose_terms: bool,
-    /// Least parameters; Table 1 by default.
-    pub lower: Params<f64>,
-    /// Largest parameters.
-    pub upper: Params<f64>,
-    /// The number type.
-    pub precision: Precision,
-    /// Leave out samples far from the fit ([`robust`]).
-    pub robust: bool,
-    /// The vector instructions; they change speed and no bit.
-    pub simd: Simd,
-}
-
-impl PartialEq for Simd {
-    fn eq(&self, other: &Self) -> bool {
-        self.name() == other.name()
-    }
-}
-
-impl Default for FitOptions {
-    fn default() -> Self {
-        FitOptions {
-            method: Method::Default,
-            seed: 0,
-            starts: None,
-            terms: ALL,
-            choose_terms: false,
-            lower: Params {
-                rho_d: 0.0,
-                rho_s: 0.0,
-                rho_v: 0.0,
-                m: 1e-5,
-                n: 1.0,
-                kappa: 0.0,
-            },
-            upper: Params {
-                rho_d: 1.0,
-                rho_s: 100.0,
-                rho_v: 100.0,
-                m: 10.0,
-                n: 100.0,
-                kappa: 100.0,
-            },
-            precision: Precision::F64,
-            robust: false,
-            simd: Simd::best(),
-        }
-    }
-}
-
-impl FitOptions {
-    /// The number of starts or candidates that will be used.
-    pub fn starts(&self) -> u32 {
-        self.starts.unwrap_or(match self.method {
-            Method::Default => CANDIDATES,
-            Method::Paper => PAPER_STARTS,
-        })
-    }
-}
-
-/// The sets of terms that are compiled in.
-pub const TERM_SETS: [u8; 8] = [
-    DIFFUSE,
-    DIFFUSE | SURFACE,
-    DIFFUSE | SURFACE | ABSORBING,
-    DIFFUSE | SURFACE | VOLUME,
-    ALL,
-    SURFACE,
-    SURFACE | ABSORBING,
-    SURFACE | VOLUME | ABSORBING,
-];
-
-/// One distinct minimum.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Minimum {
-    /// Sum of squared ln residuals over samples squared (Eq. 17).
-    pub mse2: f64,
-    /// Its parameters.
-    pub params: Params<f64>,
-    /// How many fits ended here.
-    pub hits: u32,
-    /// The least index of a start that led here.
-    pub first_start: u64,
-}
-
-/// The result of a fit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outcome {
-    /// Number of samples.
-    pub samples: usize,
-    /// Sum of squared residuals of ln f.
-    pub cost: f64,
-    /// Eq. 17.
-    pub mse2: f64,
-    /// Root of the mean squared residual of ln f.
-    pub rms_ln: f64,
-    /// The best parameters.
-    pub params: Params<f64>,
-    /// Names of the parameters that ended on a bound.
-    pub at_bound: Vec<&'static str>,
-    /// How the best fit ended.
-    pub stop: Stop,
-    /// Distinct minima, best first.
-    pub minima: Vec<Minimum>,
-    /// (high - low) / high over them (Table 3).
-    pub improvement_potential: f64,
-    /// How many passes were made.
-    pub evaluations: Evaluations,
-    /// What a robust fit left out; all else here is of the other samples.
-    pub robust: Option<Robust>,
-    /// What the scan tells about the parameters; computed in `f64` whatever the number type of the fit.
-    pub uncertainty: Uncertainty,
-}
-
-/// Why no fit was made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FitError {
-    /// The sample of this index is not valid.
-    Sample(usize, SampleError),
-    /// Fewer samples than parameters: how many of each.
-    TooFew(usize, usize),
-    /// No compiled set has these terms.
-    Terms(u8),
-}
-
-impl std::fmt::Display for FitError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            FitError::Sample(index, error) => write!(f, "sample {}: {error}", index + 1),
-            FitError::TooFew(samples, parameters) => {
-                write!(f, "{samples} samples can not determine {parameters} parameters")
-            }
-            FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
-        }
-    }
-}
-impl std::error::Error for FitError {}
+use crate::options::{FitOptions, Method, Precision};
+use crate::outcome::{FitError, Minimum, Outcome};
+use crate::simd::FastScan;
+use crate::{robust, uncertainty};
 
 /// Fits one scan; threads of the current rayon pool share the starts of the `paper` method, and change no bit.
 ///

@@ -3,8 +3,7 @@
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 
-use crate::engine::{FitError, FitOptions, Outcome};
-use crate::report::ln_f;
+use crate::{FitError, FitOptions, Outcome, ln_f};
 
 /// Residuals beyond this many scales are outliers.
 const OUTLIER: f64 = 6.0;

@@ -7,7 +7,7 @@ use brdfit_core::lobes::{Beckmann, Distribution, Facets, Ggx, Masking, NoMasking
 use brdfit_core::real::Real;
 use brdfit_core::search::{CANDIDATES, search};
 
-use crate::engine::FitError;
+use crate::FitError;
 
 type Fit = fn(&Model, &[Sample<f64>], u64) -> Result<Fitted, FitError>;
 
@@ -37,6 +37,29 @@ pub struct Fitted {
     pub minima: usize,
     /// Names and values of its parameters.
     pub parameters: Vec<(&'static str, f64)>,
+}
+
+impl Fitted {
+    /// Eq. 17.
+    pub fn mse2(&self) -> f64 {
+        self.cost / (self.samples * self.samples) as f64
+    }
+
+    /// Root of the mean squared residual of ln f.
+    pub fn rms_ln(&self) -> f64 {
+        (self.cost / self.samples as f64).sqrt()
+    }
+
+    /// Akaike's criterion with Hurvich and Tsai's correction, the variance of the residuals counted as a parameter; infinite with too few samples.
+    pub fn aicc(&self) -> f64 {
+        let (samples, k) = (self.samples as f64, self.parameters.len() as f64 + 1.0);
+        let room = samples - k - 1.0;
+        if room > 0.0 {
+            samples * Real::ln(self.cost / samples) + 2.0 * k + 2.0 * k * (k + 1.0) / room
+        } else {
+            f64::INFINITY
+        }
+    }
 }
 
 /// All of them, that of the paper first.

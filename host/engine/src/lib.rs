@@ -1,0 +1,20 @@
+//! The searches of [`brdfit_core`] for scans on a computer: each model compiled for each set of vector instructions.
+//!
+//! Apart from the program that reads files and reports, because it takes most of the time to compile, and seldom changes.
+//!
+//! [`FitOptions`] and samples go into [`fit`], an [`Outcome`] comes out; what it says does not depend on threads or instructions.
+
+mod options;
+mod outcome;
+mod search;
+
+pub mod joint;
+pub mod models;
+pub mod robust;
+pub mod simd;
+pub mod trace;
+pub mod uncertainty;
+
+pub use options::{FitOptions, Method, Precision, TERM_SETS};
+pub use outcome::{FitError, Minimum, Outcome, ln_f};
+pub use search::{blocks, descend, fit};

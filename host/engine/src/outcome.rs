@@ -1,0 +1,82 @@
+//! What a fit gives, or why there is none.
+
+use brdfit_core::brdf::{ALL, Brdf, Params};
+use brdfit_core::geometry::{Geometry, SampleError};
+use brdfit_core::lm::Stop;
+use brdfit_core::search::Evaluations;
+
+use crate::robust::Robust;
+use crate::uncertainty::Uncertainty;
+
+/// One distinct minimum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Minimum {
+    /// Sum of squared ln residuals over samples squared (Eq. 17).
+    pub mse2: f64,
+    /// Its parameters.
+    pub params: Params<f64>,
+    /// How many fits ended here.
+    pub hits: u32,
+    /// The least index of a start that led here.
+    pub first_start: u64,
+}
+
+/// The result of a fit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Number of samples.
+    pub samples: usize,
+    /// Sum of squared residuals of ln f.
+    pub cost: f64,
+    /// Eq. 17.
+    pub mse2: f64,
+    /// Root of the mean squared residual of ln f.
+    pub rms_ln: f64,
+    /// The best parameters.
+    pub params: Params<f64>,
+    /// Names of the parameters that ended on a bound.
+    pub at_bound: Vec<&'static str>,
+    /// How the best fit ended.
+    pub stop: Stop,
+    /// Distinct minima, best first.
+    pub minima: Vec<Minimum>,
+    /// (high - low) / high over them (Table 3).
+    pub improvement_potential: f64,
+    /// How many passes were made.
+    pub evaluations: Evaluations,
+    /// What a robust fit left out; all else here is of the other samples.
+    pub robust: Option<Robust>,
+    /// What the scan tells about the parameters; computed in `f64` whatever the number type of the fit.
+    pub uncertainty: Uncertainty,
+}
+
+/// Why no fit was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FitError {
+    /// The sample of this index is not valid.
+    Sample(usize, SampleError),
+    /// Fewer samples than parameters: how many of each.
+    TooFew(usize, usize),
+    /// No compiled set has these terms.
+    Terms(u8),
+}
+
+impl std::fmt::Display for FitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            FitError::Sample(index, error) => write!(f, "sample {}: {error}", index + 1),
+            FitError::TooFew(samples, parameters) => {
+                write!(f, "{samples} samples can not determine {parameters} parameters")
+            }
+            FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
+        }
+    }
+}
+impl std::error::Error for FitError {}
+
+/// ln f of the model with any set of terms, f in sr^-1; `params` are as a fit reports them, with 0 for what is absent.
+pub fn ln_f(params: &Params<f64>, geometry: &Geometry<f64>) -> f64 {
+    // Without lobes m is reported as 0, by which the model would divide.
+    let m = if params.m > 0.0 { params.m } else { 1.0 };
+    Brdf::<f64, ALL>::new(&Params { m, ..*params }).ln_f(geometry)
+}

@@ -63,7 +63,7 @@ impl Fitted {
 }
 
 /// All of them, that of the paper first.
-pub const MODELS: [Model; 9] = [
+pub static MODELS: [Model; 9] = [
     model::<Beckmann, VGroove, 0, 6>("beckmann", "Eq. 14: Beckmann, V-groove masking"),
     model::<Beckmann, Smith, 0, 6>("beckmann-smith", "Beckmann, Smith masking"),
     model::<Beckmann, NoMasking, 0, 6>("beckmann-unmasked", "Beckmann, no masking"),

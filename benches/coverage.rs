@@ -2,6 +2,7 @@
 
 use brdfit::bootstrap::{Noise, copy};
 use brdfit::engine::{FitOptions, fit};
+use brdfit::profile::calibrate::thresholds;
 use brdfit::profile::{hold, threshold};
 use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::geometry::Sample;
@@ -10,6 +11,10 @@ use brdfit_suite::scan::{data, scan};
 use rayon::prelude::*;
 
 const COPIES: u64 = 1000;
+/// Copies of a copy that tell how far its cost rises.
+const CALIBRATION: u32 = 99;
+/// Parameters whose calibrated intervals are looked at: rho_d and m.
+const CALIBRATED: [usize; 2] = [0, 3];
 /// Standard deviation of a number that is uniform within +-0.1.
 const SCALE: f64 = 0.057_735_026_918_962_58;
 
@@ -34,6 +39,9 @@ fn main() {
     println!(
         "Profile: the best fit with the parameter held at its actual value is not refuted by the F test, which is what the intervals of `brdfit profile` are made of."
     );
+    println!(
+        "Calibrated: it is not refuted by {CALIBRATION} copies of that fit (`brdfit profile --calibrate {CALIBRATION}`); for rho_d and m, and the first table, as it takes 200 fits for one answer."
+    );
     println!("Regenerate: `cargo run --release --example coverage > benches/results/coverage.md`.");
     let normal: Measure = |samples, params, noise| copy(samples, params, SCALE, noise);
     let uniform: Measure = |samples, params, noise| {
@@ -47,14 +55,16 @@ fn main() {
     table(
         "Errors of ln f normal, standard deviation 0.0577: what the intervals assume",
         normal,
+        true,
     );
     table(
         "Errors of f uniform within +-10 %, as the paper's: of the same standard deviation, but ln f is low by 0.0017 on average, so rho_d and the products of rho and F are low by 0.17 %",
         uniform,
+        false,
     );
 }
 
-fn table(title: &str, measure: Measure) {
+fn table(title: &str, measure: Measure, calibrated: bool) {
     println!("\n{title}.\n");
     println!("| set | intervals | {} |", NAMES.join(" | "));
     println!("|--:|---|{}", "--:|".repeat(NAMES.len()));
@@ -62,33 +72,50 @@ fn table(title: &str, measure: Measure) {
         let samples = scan(&data(&format!("testdata{}_ideal.csv", set + 1)));
         let held = (0..COPIES).into_par_iter().map(|seed| {
             let noise = &mut Noise::new(set as u64, seed);
-            intervals(&measure(&samples, &Params::from_array(*actual), noise), actual)
+            intervals(
+                &measure(&samples, &Params::from_array(*actual), noise),
+                actual,
+                calibrated,
+            )
         });
-        let none = || [[0u32; 6]; 2];
+        let none = || [[0u32; 6]; 3];
         let sum = held
             .map(|held| held.map(|row| row.map(u32::from)))
             .reduce(none, |a, b| {
                 std::array::from_fn(|kind| std::array::from_fn(|k| a[kind][k] + b[kind][k]))
             });
-        for (kind, counts) in ["quadratic", "profile"].iter().zip(sum) {
-            let shares = counts.map(|count| format!("{:.1}", 100.0 * f64::from(count) / COPIES as f64));
+        let kinds = ["quadratic", "profile", "calibrated"].iter().zip(sum);
+        for (kind, counts) in kinds.take(if calibrated { 3 } else { 2 }) {
+            let mut shares = counts.map(|count| format!("{:.1}", 100.0 * f64::from(count) / COPIES as f64));
+            for k in (0..6).filter(|k| *kind == "calibrated" && !CALIBRATED.contains(k)) {
+                shares[k] = "–".to_string();
+            }
             println!("| {} | {kind} | {} |", set + 1, shares.join(" | "));
         }
     }
 }
 
-/// Do the quadratic and the profile interval of each parameter hold its actual value?
-fn intervals(samples: &[Sample<f64>], actual: &[f64; 6]) -> [[bool; 6]; 2] {
+/// Do the quadratic, the profile and the calibrated interval of each parameter hold its actual value?
+fn intervals(samples: &[Sample<f64>], actual: &[f64; 6], calibrated: bool) -> [[bool; 6]; 3] {
     let options = FitOptions::default();
     let outcome = fit(samples, &options).expect("simulated scans are valid");
     let known = &outcome.uncertainty;
     let limit = threshold(0.95, known.degrees_of_freedom);
     let best = outcome.params.to_array();
     let quadratic = std::array::from_fn(|k| (best[k] - actual[k]).abs() <= Real::sqrt(limit) * known.stderr[k]);
-    let profile = std::array::from_fn(|k| {
+    let held = std::array::from_fn(|k| {
         let point = hold(samples, &options, &outcome, k, actual[k]).expect("simulated scans are valid");
         let best = outcome.cost.min(point.cost);
-        (point.cost - best) / best * known.degrees_of_freedom as f64 <= limit
+        let rise = (point.cost - best) / best * known.degrees_of_freedom as f64;
+        let calibrated = calibrated && CALIBRATED.contains(&k) && {
+            let copies = thresholds(samples, &options, k, &point.params, known.scale, CALIBRATION);
+            rise <= copies.expect("simulated scans are valid")[1]
+        };
+        (rise <= limit, calibrated)
     });
-    [quadratic, profile]
+    [
+        quadratic,
+        held.map(|(profile, _)| profile),
+        held.map(|(_, calibrated)| calibrated),
+    ]
 }

@@ -9,7 +9,7 @@ use brdfit_core::brdf::Params;
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use brdfit_suite::program;
-use brdfit_suite::scan::{left_out, number, rows, shared};
+use brdfit_suite::scan::{data, left_out, number, rows, shared};
 use brdfit_suite::tolerance::{self, check};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -283,6 +283,30 @@ fn standard_deviations_are_weights() {
     ] {
         assert_eq!(program::brdfit(&[&["fit", &file], &option[..]].concat(), b"").code, 2);
     }
+}
+
+#[test]
+fn chi_squared_is_of_the_standard_deviations() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plain = fs::read_to_string(data("testdata1_sym_seed1.csv")).expect("the set is there");
+    let mut text = String::from("theta_i_deg,theta_s_deg,brdf_per_sr,sigma\n");
+    for row in plain.lines().skip(1) {
+        let value: f64 = row
+            .rsplit(',')
+            .next()
+            .and_then(|cell| cell.parse().ok())
+            .expect("a number");
+        text += &format!("{row},{}\n", 0.05 * value);
+    }
+    let file = write(&folder, "scan.csv", text);
+    let fit = fit(&[&file]);
+    let number = |name: &str| fit[name].as_f64().expect("a number");
+    let expected = number("samples") * (number("rms_ln") / 0.05).powi(2);
+    check((number("chi2") / expected - 1.0).abs(), tolerance::CHI2);
+    let page = program::brdfit(&["fit", &file], b"").output;
+    assert!(page.contains("  chi^2      195.5"), "{page}");
+    let equal = program::brdfit(&["fit", &file, "--weights", "equal"], b"").output;
+    assert!(!equal.contains("chi^2"), "{equal}");
 }
 
 #[test]

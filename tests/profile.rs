@@ -6,6 +6,7 @@
 
 use brdfit::bootstrap::{Noise, bootstrap, copy, quantile};
 use brdfit::engine::{self, FitOptions, Outcome};
+use brdfit::profile::calibrate::thresholds;
 use brdfit::profile::{Profile, hold, profile, threshold};
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
@@ -52,7 +53,7 @@ fn intervals_end_where_the_cost_has_risen() {
         let (samples, options, outcome) = fitted(name);
         let degrees = outcome.uncertainty.degrees_of_freedom;
         for index in [0, 1, 3] {
-            let profile = profile(&samples, &options, &outcome, index).unwrap();
+            let profile = profile(&samples, &options, &outcome, index, 0).unwrap();
             for interval in profile.intervals {
                 for end in [interval.low, interval.high] {
                     assert!(!end.at_bound);
@@ -87,7 +88,7 @@ fn intervals_end_where_the_cost_has_risen() {
 #[test]
 fn flat_valleys_end_at_the_bounds() {
     let (samples, options, outcome) = fitted("testdata1_sym_seed1.csv");
-    let n = profile(&samples, &options, &outcome, 4).unwrap();
+    let n = profile(&samples, &options, &outcome, 4, 0).unwrap();
     let both = |profile: &Profile| profile.intervals.map(|at| (at.low.at_bound, at.high.at_bound));
     assert_eq!(both(&n), [(true, true); 2]);
     assert_eq!((n.intervals[1].low.value, n.intervals[1].high.value), (1.0, 100.0));
@@ -97,13 +98,13 @@ fn flat_valleys_end_at_the_bounds() {
     // An optimum on a bound: that is an end.
     let (samples, options, outcome) = fitted("testdata3_sym_seed1.csv");
     assert_eq!(outcome.params.kappa, 0.0);
-    let kappa = profile(&samples, &options, &outcome, 5).unwrap();
+    let kappa = profile(&samples, &options, &outcome, 5, 0).unwrap();
     assert!(kappa.intervals[0].low.at_bound && kappa.intervals[0].low.value == 0.0);
     // A narrow range is respected.
     let mut narrow = options;
     (narrow.lower.m, narrow.upper.m) = (0.00495, 0.0050);
     let outcome = engine::fit(&samples, &narrow).unwrap();
-    let m = profile(&samples, &narrow, &outcome, 3).unwrap();
+    let m = profile(&samples, &narrow, &outcome, 3, 0).unwrap();
     assert_eq!(both(&m), [(true, true); 2]);
     assert!(m.points.iter().all(|point| (0.00495..=0.0050).contains(&point.value)));
 }
@@ -150,6 +151,21 @@ fn copies_are_seeded_and_spread_as_the_standard_errors() {
 }
 
 #[test]
+fn measured_thresholds_are_those_of_f_where_the_model_is_linear() {
+    let of = |name: &str, index: usize| {
+        let (samples, options, outcome) = fitted(name);
+        let scale = outcome.uncertainty.scale;
+        let found = thresholds(&samples, &options, index, &outcome.params, scale, 100).unwrap();
+        found[1] / threshold(0.95, outcome.uncertainty.degrees_of_freedom)
+    };
+    check((of("testdata1_sym_seed1.csv", 0) - 1.0).abs(), tolerance::CALIBRATED);
+    // m can not go where n and kappa would have to leave their bounds.
+    let m = of("testdata2_sym_seed1.csv", 3);
+    println!("m of test data 2: {m:.3} of F's threshold");
+    assert!(m < 0.9);
+}
+
+#[test]
 fn command() {
     let file = data("testdata2_sym_seed1.csv");
     let file = file.to_str().unwrap();
@@ -163,6 +179,8 @@ fn command() {
     assert!(!ran.output.contains("  rho_s "));
     let drawn = std::fs::read_to_string(svg).unwrap();
     assert!(drawn.ends_with("</svg>\n") && drawn.matches("translate(").count() == 2 && !drawn.contains("NaN"));
+    let calibrated = [&arguments[..4], &["--calibrate", "20", "--format", "json"]].concat();
+    let calibrated: Value = serde_json::from_str(&program::brdfit(&calibrated, b"").output).unwrap();
     let ran = program::brdfit(&[&arguments[..], &["--format", "json"]].concat(), b"");
     let json: Value = serde_json::from_str(&ran.output).unwrap();
     let rho_d = &json["parameters"][0];
@@ -171,6 +189,12 @@ fn command() {
     assert_eq!((&ends["level"], &ends["low_at_bound"]), (&0.95.into(), &false.into()));
     assert!(ends["low"].as_f64() < rho_d["best"].as_f64() && rho_d["best"].as_f64() < ends["high"].as_f64());
     assert!(rho_d["points"].as_array().unwrap().len() > 10);
+    assert_eq!(
+        (&json["calibrated"], &calibrated["calibrated"]),
+        (&Value::Null, &20.into())
+    );
+    let (low, again) = (&ends["low"], &calibrated["parameters"][0]["intervals"][1]["low"]);
+    assert!(low != again && again.as_f64() < rho_d["best"].as_f64());
     assert_eq!(
         (&json["bootstrap"]["copies"], &json["bootstrap"]["seed"]),
         (&20.into(), &0.into())

@@ -140,6 +140,66 @@ fn takes_several_scans_and_other_terms() {
 }
 
 #[test]
+fn reports_results_of_earlier_fits() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let bad = at("bad.csv");
+    fs::write(&bad, "theta_i_deg,theta_s_deg,brdf_per_sr\n45,10,-1\n").unwrap();
+    let options = ["--mask-retro", "6", "--seed", "2"];
+    let direct = succeed(&[&[&scan()[..], "--quiet"], &options[..]].concat(), "");
+    let made_by = |page: &str| page.replace(between(page, "<code>brdfit report", "</code>"), "");
+    for name in ["results.json", "results.csv"] {
+        let results = at(name);
+        let good = scan();
+        let all = [&["batch", &good, &bad, "--quiet", "--out", &results], &options[..]].concat();
+        assert_eq!(program::brdfit(&all, b"").code, 1);
+        let ran = program::brdfit(&[&["report", &results], &options[..]].concat(), b"");
+        assert_eq!(ran.code, 0, "{}", ran.errors);
+        assert!(
+            ran.errors
+                .contains(&format!("{results}: left out, as it has no fit: {bad}:2")),
+            "{}",
+            ran.errors
+        );
+        assert_eq!(made_by(&ran.output), made_by(&direct));
+        // Another mask is another fit.
+        let other = program::brdfit(&["report", &results], b"");
+        assert_eq!((other.code, other.output.as_str()), (2, ""));
+        assert!(
+            other.errors.contains(" now, and ") && other.errors.contains("the options of the fit"),
+            "{}",
+            other.errors
+        );
+    }
+    let one = program::brdfit(&["fit", &scan(), "--format", "json"], b"").output;
+    assert_eq!(
+        well_formed(&succeed(&["-"], &one)).len(),
+        well_formed(&succeed(&[&scan()], "")).len()
+    );
+    let lost = one.replace("testdata1_sym_seed1.csv", "lost.csv");
+    let ran = program::brdfit(&["report", "-"], lost.as_bytes());
+    assert!(ran.code == 2 && ran.errors.contains("- names it"), "{}", ran.errors);
+}
+
+#[test]
+fn writes_figures_as_svg_and_png() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = folder.path().join("figures");
+    succeed(&[&scan(), "--plot", figures.to_str().unwrap()], "");
+    for name in ["curves", "residuals", "polar", "starts", "albedo"] {
+        let svg = fs::read_to_string(figures.join(format!("1-{name}.svg"))).unwrap();
+        let width: u32 = between(&svg, "width=\"", "\"").parse().unwrap();
+        let png = fs::read(figures.join(format!("1-{name}.png"))).unwrap();
+        assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+        // The header's width, twice the picture's.
+        assert_eq!(u32::from_be_bytes(png[16..20].try_into().unwrap()), 2 * width);
+    }
+    let ran = program::brdfit(&["fit", &scan(), "--plot", "fit.pdf"], b"");
+    assert_eq!(ran.code, 2);
+    assert!(ran.errors.contains("a picture is SVG or PNG"), "{}", ran.errors);
+}
+
+#[test]
 fn writes_nothing_where_a_scan_is_wrong() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("report.html");

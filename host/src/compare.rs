@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 
 use crate::cli::Streams;
 use crate::engine::models::{Fitted, MODELS, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{deliver, replace_file, shortest};
-use crate::plot;
+use crate::output::{Format, OutputArguments, shortest};
+use crate::plot::{self, picture};
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
 #[derive(Args, Debug)]
@@ -25,23 +25,13 @@ pub struct Arguments {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Draws every model's best fit over the data, as SVG
-    #[arg(long, value_name = "FILE.svg")]
+    #[command(flatten)]
+    output: OutputArguments,
+    /// Draws every model's best fit over the data, as SVG or PNG
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// Runs the subcommand.
@@ -52,14 +42,14 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = choose(arguments.models.as_deref())?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let fits = compare(&models, &measurement, arguments.seed)?;
-    let text = match arguments.format {
+    let text = match arguments.output.format {
         Format::Text => text(&measurement, &fits),
         Format::Json => json(&measurement, &fits),
     };
     if let Some(path) = &arguments.plot {
-        replace_file(path, picture(&measurement, &models, &fits).as_bytes())?;
+        picture::save(path, &picture(&measurement, &models, &fits))?;
     }
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    arguments.output.deliver(&text, streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }

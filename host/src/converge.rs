@@ -8,15 +8,16 @@ use std::time::Duration;
 
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::ProgressBar;
 
 use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
-use crate::output::{deliver, replace_file};
+use crate::options;
+use crate::output::{OutputArguments, TableFormat};
 use crate::paper::embedded;
-use crate::{options, plot};
+use crate::plot::{self, picture};
 
 /// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
 #[derive(Args, Debug)]
@@ -39,24 +40,13 @@ pub struct Arguments {
     /// Terms of the model, of diffuse,surface,volume,absorbing
     #[arg(long, value_name = "LIST", default_value = "all")]
     terms: String,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Draws the excess cost over the run time, as SVG
-    #[arg(long, value_name = "FILE.svg")]
+    #[command(flatten)]
+    output: OutputArguments<TableFormat>,
+    /// Draws the excess cost over the run time, as SVG or PNG
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
 }
 
 /// Runs the subcommand, on one thread.
@@ -93,15 +83,15 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         studies.push(study);
     }
     bar.finish_and_clear();
-    let text = match arguments.format {
-        Format::Text => report::text(&studies, arguments.seeds),
-        Format::Json => report::json(&studies, arguments.seeds),
-        Format::Csv => report::csv(&studies),
+    let text = match arguments.output.format {
+        TableFormat::Text => report::text(&studies, arguments.seeds),
+        TableFormat::Json => report::json(&studies, arguments.seeds),
+        TableFormat::Csv => report::csv(&studies),
     };
     if let Some(path) = &arguments.plot {
-        replace_file(path, plot::converge_svg(&studies, arguments.seeds).as_bytes())?;
+        picture::save(path, &plot::converge_svg(&studies, arguments.seeds))?;
     }
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    arguments.output.deliver(&text, streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
@@ -13,8 +13,8 @@ use crate::engine::{FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::{deliver, replace_file};
-use crate::plot;
+use crate::output::{OutputArguments, TableFormat};
+use crate::plot::{self, picture};
 use crate::report::{self, Report};
 
 /// Fits the model to scans
@@ -28,27 +28,16 @@ pub struct Arguments {
     scans: Vec<PathBuf>,
     #[command(flatten)]
     search: SearchArguments,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    #[command(flatten)]
+    output: OutputArguments<TableFormat>,
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Draws the scan with its distinct minima, as SVG; for one scan
-    #[arg(long, value_name = "FILE.svg")]
+    /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
 }
 
 /// Runs the subcommand; nothing is written before every scan is read and fitted.
@@ -74,19 +63,19 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     });
     bar.finish_and_clear();
     let reports: Vec<Report> = results.into_iter().collect::<Result<_, _>>()?;
-    let text = match arguments.format {
-        Format::Text => report::text(&reports, arguments.minima),
-        Format::Json => report::json(&reports),
-        Format::Csv => report::csv(&reports, arguments.minima),
+    let text = match arguments.output.format {
+        TableFormat::Text => report::text(&reports, arguments.minima),
+        TableFormat::Json => report::json(&reports),
+        TableFormat::Csv => report::csv(&reports, arguments.minima),
     };
     if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
         let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
-        replace_file(
+        picture::save(
             path,
-            plot::scan_svg(&measurement.label(), &measurement.samples, &curves).as_bytes(),
+            &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
         )?;
     }
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    arguments.output.deliver(&text, streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }

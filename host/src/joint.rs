@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use brdfit_core::brdf::NAMES;
 use brdfit_core::geometry::Sample;
 use brdfit_engine::joint::{Fitted, SCANS, fit};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::cli::Streams;
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{deliver, shortest};
+use crate::output::{Format, OutputArguments, shortest};
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]
@@ -26,20 +26,10 @@ pub struct Arguments {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// Runs the subcommand.
@@ -58,11 +48,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let fitted =
         fit(&samples, shared, arguments.seed).map_err(|(place, error)| input::explain(&measurements[place], error))?;
-    let text = match arguments.format {
+    let text = match arguments.output.format {
         Format::Text => text(&measurements, &fitted),
         Format::Json => json(&measurements, &fitted),
     };
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    arguments.output.deliver(&text, streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }

@@ -2,9 +2,52 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
 
 use crate::error::Error;
+
+/// In which form a result leaves, and where to: options of most commands.
+#[derive(Args, Debug)]
+pub struct OutputArguments<F: ValueEnum + Clone + Send + Sync + 'static = Format> {
+    /// Form of the result
+    #[arg(long, value_enum, default_value = "text")]
+    pub format: F,
+    /// Writes the result to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// The forms of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A page for people
+    Text,
+    /// JSON
+    Json,
+}
+
+/// The forms of a result that is also a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TableFormat {
+    /// A page for people
+    Text,
+    /// JSON
+    Json,
+    /// A table with a head
+    Csv,
+}
+
+impl<F: ValueEnum + Clone + Send + Sync + 'static> OutputArguments<F> {
+    /// Writes the result where it is wanted.
+    ///
+    /// # Errors
+    /// As [`deliver`].
+    pub fn deliver(&self, contents: &str, stream: &mut dyn Write) -> Result<(), Error> {
+        deliver(contents.as_bytes(), self.output.as_deref(), stream)
+    }
+}
 
 /// The shortest decimal form that reads back as the same number.
 pub fn shortest(x: f64) -> String {

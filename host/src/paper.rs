@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::cli::Streams;
 use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
 use crate::error::Error;
-use crate::output::deliver;
+use crate::output::{Format, deliver};
 
 /// What noise the synthetic sets have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
@@ -22,15 +22,6 @@ pub enum Noise {
     Sym,
     /// Uniform within 0 to 10 %.
     Pos,
-}
-
-/// How the study is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// Tables that fit 100 columns.
-    Text,
-    /// One JSON object.
-    Json,
 }
 
 /// Fits the paper's three synthetic sets, which are built in, as its section 4 does

@@ -5,6 +5,7 @@ mod axis;
 mod converge;
 mod curve;
 mod overlay;
+pub mod picture;
 mod polar;
 mod profile;
 mod residuals;

@@ -7,6 +7,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::engine::{self, FitError, FitOptions, Method, Outcome, Precision};
 
+pub mod calibrate;
 pub mod command;
 mod json;
 mod text;
@@ -96,6 +97,7 @@ pub fn hold(
 /// Profiles parameter `index` of [`NAMES`] from bound to bound, starting from a fit of these samples with these options; in `f64`.
 ///
 /// Each point is the best of fits from its neighbours on both sides, from the minima of the fit, and from a search of its own.
+/// The intervals are those of the F test, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
 ///
 /// # Errors
 /// [`FitError`].
@@ -104,6 +106,7 @@ pub fn profile(
     options: &FitOptions,
     outcome: &Outcome,
     index: usize,
+    copies: u32,
 ) -> Result<Profile, FitError> {
     let degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
     let limits = LEVELS.map(|level| threshold(level, degrees_of_freedom.max(1)));
@@ -158,7 +161,15 @@ pub fn profile(
     // The wider first: on its way it may meet values that belong to the narrower.
     for (k, limit) in limits.into_iter().enumerate().rev() {
         for high in [false, true] {
-            if let Some(value) = crossing(&mut profile, &held, limit, high)? {
+            let mut value = crossing(&mut profile, &held, limit, high)?;
+            if copies > 0 {
+                let at = value.unwrap_or(if high { upper } else { lower });
+                let null = profile.points.iter().find(|point| point.value == at).unwrap_or(&best);
+                let scale = outcome.uncertainty.scale;
+                let limits = calibrate::thresholds(samples, options, index, &null.params, scale, copies)?;
+                value = crossing(&mut profile, &held, limits[k], high)?;
+            }
+            if let Some(value) = value {
                 let end = End { value, at_bound: false };
                 let interval = &mut profile.intervals[k];
                 *(if high { &mut interval.high } else { &mut interval.low }) = end;

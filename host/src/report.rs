@@ -33,6 +33,8 @@ pub struct Report {
     pub options: FitOptions,
     /// What came out.
     pub outcome: Outcome,
+    /// Sum of squared residuals of ln f over their variances, if the file gives standard deviations; that of a right model is near the degrees of freedom.
+    pub chi2: Option<f64>,
     /// Why these terms, if the scan chose them.
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
@@ -64,6 +66,7 @@ impl Report {
             angles: by_angle(&samples, &outcome.params),
             derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
             options: *options,
+            chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,
             choice: None,
             elapsed: Some(elapsed),
@@ -145,6 +148,9 @@ struct JsonReport<'a> {
     terms: Vec<&'a str>,
     mse2: f64,
     rms_ln: f64,
+    /// Of the standard deviations in the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chi2: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     robust_scale: Option<f64>,
     parameters: JsonParameters,
@@ -215,6 +221,7 @@ fn json_report(report: &Report) -> JsonReport<'_> {
         terms: term_names(report.options.terms),
         mse2: outcome.mse2,
         rms_ln: outcome.rms_ln,
+        chi2: report.chi2,
         robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
         parameters: json_parameters(&outcome.params),
         at_bound: &outcome.at_bound,
@@ -344,6 +351,10 @@ fn page(report: &Report, minima: bool) -> String {
         digits(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
+    if let Some(chi2) = report.chi2 {
+        let degrees = outcome.uncertainty.degrees_of_freedom;
+        line(format!("  chi^2      {} of {degrees} degrees of freedom", digits(chi2)));
+    }
     if let Some(robust) = &outcome.robust {
         line(format!(
             "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",

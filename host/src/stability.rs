@@ -10,13 +10,13 @@ mod text;
 use std::path::PathBuf;
 
 use brdfit_core::brdf::ALL;
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options;
-use crate::output::deliver;
+use crate::output::{Format, OutputArguments};
 use assess::{Assessment, assess};
 
 /// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
@@ -29,20 +29,10 @@ pub struct Arguments {
     /// Terms of the model, of diffuse,surface,volume,absorbing
     #[arg(long, value_name = "LIST", default_value = "all", requires = "scan")]
     terms: String,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArguments,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// Runs the subcommand.
@@ -53,7 +43,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let text = match &arguments.scan {
         None => {
             let cases = built_in();
-            match arguments.format {
+            match arguments.output.format {
                 Format::Text => text::write(&cases),
                 Format::Json => json(&cases),
             }
@@ -64,13 +54,13 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             let case = assess(&measurement.label(), &measurement.samples, terms)
                 .map_err(|error| input::explain(&measurement, error))?;
             left_out::note(&[measurement], streams.errors);
-            match arguments.format {
+            match arguments.output.format {
                 Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
                 Format::Json => json(&case),
             }
         }
     };
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+    arguments.output.deliver(&text, streams.output)
 }
 
 /// The assessment of every built-in case.

@@ -245,6 +245,10 @@ pub const INTERVAL_BELOW: Tolerance = Tolerance(3e-4);
 pub const PROFILE_POINT: Tolerance = Tolerance(5e-15);
 /// Size of a simulated noise against the one asked for, of 2000 samples; relative; measured 0.0080.
 pub const NOISE_SIZE: Tolerance = Tolerance(0.02);
+/// Threshold of 95 % for rho_d from 100 copies, over that of F, less 1; 100 copies know it to 0.2.
+pub const CALIBRATED: Tolerance = Tolerance(0.2);
+/// chi^2 against the rms residual over the standard deviation that every sample has; relative; measured 1.1e-16.
+pub const CHI2: Tolerance = Tolerance(5e-16);
 /// AICc and BIC against their formulas; relative; measured 0.
 pub const CRITERION: Tolerance = Tolerance(1e-15);
 /// F against the quantile at its own probability; measured 9.4e-13.

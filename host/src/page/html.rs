@@ -89,10 +89,10 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
             @if heading { h2 { (section.label) } }
             (summary(section))
             (parameters(section))
-            @for (number, (figure, caption)) in section.figures.iter().enumerate() {
+            @for (number, figure) in section.figures.iter().enumerate() {
                 figure {
-                    (PreEscaped(inline(figure, &format!("{}-{}", place + 1, number + 1))))
-                    figcaption { b { "Figure " (number + 1) ". " } (caption) }
+                    (PreEscaped(inline(&figure.svg, &format!("{}-{}", place + 1, number + 1))))
+                    figcaption { b { "Figure " (number + 1) ". " } (figure.caption) }
                 }
                 // Each table stands beside the figure that shows the same.
                 @if number == 3 { (minima(section)) }
@@ -113,6 +113,9 @@ fn summary(section: &Section) -> Markup {
                 "The best fit leaves an rms residual of ln " i { "f" } " of " b { (percent(outcome.rms_ln)) }
                 " over " (outcome.samples) " samples at " (report.angles.len())
                 @if report.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (stop_meaning(outcome.stop)) "."
+                @if let Some(chi2) = report.chi2 {
+                    " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
+                }
             }
             @for open in undetermined(&outcome.params, known, &report.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (open.sentence()) "." }

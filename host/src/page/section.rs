@@ -28,8 +28,18 @@ pub struct Section {
     pub survey: Outcome,
     /// The number of its starts.
     pub starts: u32,
-    /// The figures, each with what stands below it.
-    pub figures: Vec<(String, &'static str)>,
+    /// The figures.
+    pub figures: Vec<Figure>,
+}
+
+/// A figure.
+pub struct Figure {
+    /// What its file is called.
+    pub name: &'static str,
+    /// The picture.
+    pub svg: String,
+    /// What stands below it.
+    pub caption: &'static str,
 }
 
 impl Section {
@@ -72,7 +82,7 @@ impl Section {
     }
 }
 
-fn figures(samples: &[Sample<f64>], report: &Report, minima: &[Minimum], starts: u32) -> Vec<(String, &'static str)> {
+fn figures(samples: &[Sample<f64>], report: &Report, minima: &[Minimum], starts: u32) -> Vec<Figure> {
     let outcome = &report.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let others = minima.iter().filter(other).map(|minimum| minimum.params);
@@ -86,25 +96,30 @@ fn figures(samples: &[Sample<f64>], report: &Report, minima: &[Minimum], starts:
         .map(|at| (at.theta_i.to_degrees(), at.reflectance));
     let measured: Vec<(f64, Value)> = measured.collect();
     vec![
-        (
-            plot::scan_svg("", samples, &curves),
-            "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
-        ),
-        (
-            plot::residuals_svg(samples, &outcome.params, outcome.uncertainty.scale),
-            "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
-        ),
-        (
-            plot::polar_svg(samples, &outcome.params),
-            "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
-        ),
-        (
-            plot::waterfall_svg(minima, starts),
-            "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
-        ),
-        (
-            plot::albedo_svg(&line, &measured),
-            "Directional-hemispherical reflectance (directional albedo) of the best fit, with one standard error; dots at the measured angles of incidence.",
-        ),
+        Figure {
+            name: "curves",
+            svg: plot::scan_svg("", samples, &curves),
+            caption: "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+        },
+        Figure {
+            name: "residuals",
+            svg: plot::residuals_svg(samples, &outcome.params, outcome.uncertainty.scale),
+            caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
+        },
+        Figure {
+            name: "polar",
+            svg: plot::polar_svg(samples, &outcome.params),
+            caption: "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
+        },
+        Figure {
+            name: "starts",
+            svg: plot::waterfall_svg(minima, starts),
+            caption: "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
+        },
+        Figure {
+            name: "albedo",
+            svg: plot::albedo_svg(&line, &measured),
+            caption: "Directional-hemispherical reflectance (directional albedo) of the best fit, with one standard error; dots at the measured angles of incidence.",
+        },
     ]
 }

@@ -1,4 +1,4 @@
-//! Profiles of parameters: the rise of the cost over each, with the levels of 68 and 95 %.
+//! Profiles of parameters: the rise of the cost over each, with the levels of the F test of 68 and 95 %, and the ends of the intervals.
 
 use std::fmt::Write;
 
@@ -80,6 +80,15 @@ fn panel(out: &mut String, profile: &Profile, y: &Axis, width: f64, first: bool)
         svg::path(out, &style, &[(0.0, at), (width, at)]);
         let grey = "text-anchor=\"end\" fill=\"#666\" font-size=\"11\"";
         svg::text(out, width - 3.0, at - 3.0, grey, &format!("{:.0} %", 100.0 * level));
+    }
+    for (interval, dashes) in profile.intervals.iter().zip(["2 4", "7 4"]) {
+        let style = format!("stroke=\"#888\" stroke-dasharray=\"{dashes}\"");
+        for end in [interval.low, interval.high] {
+            let at = x.pixel(scale(end.value));
+            if !end.at_bound && at.is_finite() {
+                svg::path(out, &style, &[(at, 0.0), (at, HEIGHT)]);
+            }
+        }
     }
     let line: Vec<(f64, f64)> = profile
         .points

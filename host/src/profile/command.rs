@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use brdfit_core::brdf::{NAMES, Params, has};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rayon::prelude::*;
 
 use super::{Profile, json, profile, text};
@@ -14,8 +14,8 @@ use crate::engine::{FitError, FitOptions, Outcome, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::{SearchArguments, term_names};
-use crate::output::{deliver, replace_file};
-use crate::plot;
+use crate::output::{Format, OutputArguments};
+use crate::plot::{self, picture};
 
 /// Shows which values of a parameter a scan allows: the cost over it, minimised over the others
 #[derive(Args, Debug)]
@@ -30,25 +30,18 @@ pub struct Arguments {
     /// Adds percentiles over N copies of the fitted scan with new noise
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
     bootstrap: Option<u32>,
+    /// Takes the thresholds of the intervals from N copies of the scan at each end, in place of the F test's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    calibrate: Option<u32>,
     #[command(flatten)]
     search: SearchArguments,
-    /// Form of the result
-    #[arg(long, value_enum, default_value = "text")]
-    format: Format,
-    /// Writes the result to a file, or with - to standard output
-    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Draws the profiles, as SVG
-    #[arg(long, value_name = "FILE.svg")]
+    #[command(flatten)]
+    output: OutputArguments,
+    /// Draws the profiles, as SVG or PNG
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// What the command found about one scan.
@@ -62,6 +55,8 @@ pub struct Findings {
     pub profiles: Vec<Profile>,
     /// The parameters of each copy; empty without bootstrap.
     pub copies: Vec<Params<f64>>,
+    /// The number of copies at each end of an interval whose thresholds are measured; 0 for those of the F test.
+    pub calibrated: u32,
     /// The seed of the search and of the copies.
     pub seed: u64,
 }
@@ -87,7 +82,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             Err(error) => return Ok(Err(error)),
         };
         let each = parameters.par_iter();
-        let profiles = each.map(|&index| profile(samples, &options, &outcome, index));
+        let calibrated = arguments.calibrate.unwrap_or(0);
+        let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
         let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
         let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
         Ok(Ok((outcome, profiles, copies)))
@@ -107,16 +103,17 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         outcome,
         profiles,
         copies,
+        calibrated: arguments.calibrate.unwrap_or(0),
         seed: options.seed,
     };
-    let written = match arguments.format {
+    let written = match arguments.output.format {
         Format::Text => text::write(&findings),
         Format::Json => json::write(&findings),
     };
     if let Some(path) = &arguments.plot {
-        replace_file(path, plot::profile_svg(&findings.name, &findings.profiles).as_bytes())?;
+        picture::save(path, &plot::profile_svg(&findings.name, &findings.profiles))?;
     }
-    deliver(written.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    arguments.output.deliver(&written, streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }

@@ -16,6 +16,8 @@ struct Document<'a> {
     degrees_of_freedom: usize,
     parameters: Vec<Parameter>,
     bootstrap: Option<Bootstrap>,
+    /// Copies at each end of an interval whose thresholds are measured; null for those of the F test.
+    calibrated: Option<u32>,
 }
 
 #[derive(Serialize)]
@@ -75,6 +77,7 @@ pub fn write(findings: &Findings) -> String {
             .iter()
             .map(|profile| parameter(profile, known.stderr))
             .collect(),
+        calibrated: Some(findings.calibrated).filter(|&copies| copies > 0),
         bootstrap: (!findings.copies.is_empty()).then(|| Bootstrap {
             copies: findings.copies.len(),
             seed: findings.seed,

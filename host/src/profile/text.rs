@@ -64,7 +64,11 @@ pub fn write(findings: &Findings) -> String {
     }
     page.push('\n');
     page += &notes;
-    page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by an F test.\n";
+    page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by ";
+    page += &match findings.calibrated {
+        0 => "an F test.\n".to_string(),
+        copies => format!("{copies} copies, seed {}.\n", findings.seed),
+    };
     page += "  (bound) marks an end that the bound of the parameter sets, not the data.\n";
     page
 }

@@ -1,0 +1,69 @@
+//! Pictures as files: SVG, or PNG that is drawn from it.
+
+use std::path::{Path, PathBuf};
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree};
+
+use crate::error::Error;
+use crate::output::replace_file;
+
+/// Pixels of a PNG for one of the SVG: 1800 across, 15 cm at 300 dpi.
+const SCALE: f32 = 2.0;
+
+/// With their own font, pictures have the same letters on every machine, and some where there are no fonts at all.
+const FONTS: [&[u8]; 3] = [
+    include_bytes!("font/DejaVuSansCondensed.ttf"),
+    include_bytes!("font/DejaVuSansCondensed-Bold.ttf"),
+    include_bytes!("font/DejaVuSansCondensed-Oblique.ttf"),
+];
+
+/// Accepts the name of a picture: `.svg`, `.png`, or no ending, which stands for SVG.
+///
+/// # Errors
+/// Another ending.
+pub fn name(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().map(|ending| ending.to_ascii_lowercase()) {
+        Some(ending) if ending != "svg" && ending != "png" => {
+            Err("a picture is SVG or PNG; let it end in .svg or .png".to_string())
+        }
+        _ => Ok(path),
+    }
+}
+
+/// Writes a picture in the form that the ending of its name says.
+///
+/// # Errors
+/// The file can not be written, or the picture not be drawn.
+pub fn save(path: &Path, svg: &str) -> Result<(), Error> {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+    {
+        replace_file(
+            path,
+            &png(svg).map_err(|error| error.in_file(path.display().to_string()))?,
+        )
+    } else {
+        replace_file(path, svg.as_bytes())
+    }
+}
+
+/// The bytes of a PNG.
+fn png(svg: &str) -> Result<Vec<u8>, Error> {
+    let fail = |why: &dyn std::fmt::Display| {
+        Error::new(format!("the picture can not be drawn: {why}")).help("write it as .svg")
+    };
+    let mut options = Options::default();
+    for font in FONTS {
+        options.fontdb_mut().load_font_data(font.to_vec());
+    }
+    options.fontdb_mut().set_sans_serif_family("DejaVu Sans Condensed");
+    let tree = Tree::from_str(svg, &options).map_err(|error| fail(&error))?;
+    let size = tree.size().to_int_size().scale_by(SCALE);
+    let canvas = size.and_then(|size| Pixmap::new(size.width(), size.height()));
+    let mut canvas = canvas.ok_or_else(|| fail(&"it is too large"))?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut canvas.as_mut());
+    canvas.encode_png().map_err(|error| fail(&error))
+}

@@ -301,7 +301,8 @@ fn chi_squared_is_of_the_standard_deviations() {
     let file = write(&folder, "scan.csv", text);
     let fit = fit(&[&file]);
     let number = |name: &str| fit[name].as_f64().expect("a number");
-    let expected = number("samples") * (number("rms_ln") / 0.05).powi(2);
+    let scales = number("rms_ln") / 0.05;
+    let expected = number("samples") * scales * scales;
     check((number("chi2") / expected - 1.0).abs(), tolerance::CHI2);
     let page = program::brdfit(&["fit", &file], b"").output;
     assert!(page.contains("  chi^2      195.5"), "{page}");

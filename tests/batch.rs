@@ -37,18 +37,8 @@ fn batch(folder: &Path, out: &Path, options: &[&str]) -> String {
 }
 
 fn fail(arguments: &[&str], what: &str) {
-    let ran = brdfit(arguments);
-    assert_eq!(
-        (ran.code, ran.output.as_str()),
-        (2, ""),
-        "{arguments:?}: {}",
-        ran.errors
-    );
-    assert!(
-        ran.errors.contains(what) && ran.errors.lines().count() == 1,
-        "{what} is not in: {}",
-        ran.errors
-    );
+    let errors = program::fail(arguments);
+    assert!(errors.contains(what), "{what} is not in: {errors}");
 }
 
 /// The cells of a table, without columns that `leave_out` names.

@@ -42,7 +42,7 @@ pub struct FitOptions {
     pub upper: Params<f64>,
     /// The number type.
     pub precision: Precision,
-    /// Leave out samples far from the fit ([`robust`]).
+    /// Leave out samples far from the fit ([`crate::robust`]).
     pub robust: bool,
     /// The vector instructions; they change speed and no bit.
     pub simd: Simd,

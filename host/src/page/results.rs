@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::NAMES;
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{NAMES, Params};
 use serde::Deserialize;
 
 use crate::error::Error;
+use crate::report::json::JsonParameters;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,18 +33,8 @@ pub fn parse(bytes: &[u8]) -> Option<Vec<Fitted>> {
 struct Object {
     file: PathBuf,
     scan: Option<String>,
-    parameters: Option<Params6>,
+    parameters: Option<JsonParameters>,
     error: Option<String>,
-}
-
-#[derive(Deserialize)]
-struct Params6 {
-    rho_d: f64,
-    rho_s: f64,
-    rho_v: f64,
-    m: f64,
-    n: f64,
-    kappa: f64,
 }
 
 fn json(text: &str) -> Option<Vec<Fitted>> {
@@ -52,7 +42,7 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
     let objects = one.or_else(|_| serde_json::from_str::<Vec<Object>>(text)).ok()?;
     let fitted = |object: Object| {
         let params = match object.parameters {
-            Some(p) => Ok(Params::from_array([p.rho_d, p.rho_s, p.rho_v, p.m, p.n, p.kappa])),
+            Some(parameters) => Ok(parameters.into()),
             None => Err(object.error?),
         };
         Some(Fitted {

@@ -18,7 +18,6 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::{Ended, Streams};
 use crate::engine::FitOptions;
 use crate::engine::simd::Simd;
 use crate::error::Error;
@@ -26,6 +25,7 @@ use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::replace_with;
+use crate::streams::{Ended, Streams};
 use journal::Journal;
 use record::{Head, Record};
 use results::Form;

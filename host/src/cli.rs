@@ -1,12 +1,13 @@
 //! The command line: one function, which the program and the tests call alike.
 
 use std::ffi::OsString;
-use std::io::{Read, Write};
+use std::io::Write;
 
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::batch::{self, merge};
 use crate::error::{EXIT_CODE, Error};
+use crate::streams::{Ended, Streams};
 use crate::{compare, converge, export, fit, joint, page, paper, profile, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
@@ -46,31 +47,6 @@ enum Command {
     Export(export::Arguments),
     Completions(shell::Completions),
     Man(shell::Manual),
-}
-
-/// What the program reads and writes.
-pub struct Streams<'a> {
-    /// Standard input.
-    pub input: &'a mut dyn Read,
-    /// Standard output: results only.
-    pub output: &'a mut dyn Write,
-    /// Standard error: failures and notes.
-    pub errors: &'a mut dyn Write,
-    /// Show progress on the terminal that standard error is.
-    pub progress: bool,
-    /// Colours where `--color` does not say.
-    pub color: bool,
-    /// Show no summaries.
-    pub quiet: bool,
-}
-
-/// How a command ended that did what it was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Ended {
-    /// The exit code.
-    pub code: u8,
-    /// What standard error is told, even with `--quiet`: nothing, or whole lines.
-    pub why: String,
 }
 
 /// The program's commands and options, of which help, completions and manual are made.
@@ -149,8 +125,8 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),
-        Command::Completions(arguments) => shell::completions(arguments, streams),
-        Command::Man(arguments) => shell::manual(arguments, streams),
+        Command::Completions(arguments) => shell::completions(arguments, Cli::command(), streams),
+        Command::Man(arguments) => shell::manual(arguments, Cli::command(), streams),
     }?;
     Ok(Ended::default())
 }

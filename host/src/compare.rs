@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::Streams;
 use crate::engine::models::{Fitted, MODELS, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{Format, OutputArguments, shortest};
 use crate::plot::{self, picture};
+use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
 #[derive(Args, Debug)]

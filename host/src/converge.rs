@@ -11,13 +11,13 @@ use brdfit_core::geometry::Sample;
 use clap::Args;
 use indicatif::ProgressBar;
 
-use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options;
 use crate::output::{OutputArguments, TableFormat};
 use crate::paper::embedded;
 use crate::plot::{self, picture};
+use crate::streams::Streams;
 
 /// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
 #[derive(Args, Debug)]

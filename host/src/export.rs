@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{STDIN, bytes};
 use crate::output::deliver;
+use crate::streams::Streams;
 use model::Model;
 
 /// Writes a fitted model for other programs

@@ -8,7 +8,6 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::choose;
-use crate::cli::Streams;
 use crate::engine::{FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
@@ -16,6 +15,7 @@ use crate::options::SearchArguments;
 use crate::output::{OutputArguments, TableFormat};
 use crate::plot::{self, picture};
 use crate::report::{self, Report};
+use crate::streams::Streams;
 
 /// Fits the model to scans
 #[derive(Args, Debug)]

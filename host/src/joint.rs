@@ -8,10 +8,10 @@ use brdfit_engine::joint::{Fitted, SCANS, fit};
 use clap::Args;
 use serde_json::{Map, Value, json};
 
-use crate::cli::Streams;
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{Format, OutputArguments, shortest};
+use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]

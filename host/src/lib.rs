@@ -30,4 +30,5 @@ pub mod report;
 pub mod shell;
 pub mod simulate;
 pub mod stability;
+pub mod streams;
 pub mod uncertainty;

@@ -4,7 +4,8 @@ use std::env;
 use std::io::{IsTerminal, stderr, stdin, stdout};
 use std::process::ExitCode;
 
-use brdfit::cli::{Streams, run};
+use brdfit::cli::run;
+use brdfit::streams::Streams;
 
 fn main() -> ExitCode {
     ExitCode::from(run(

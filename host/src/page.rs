@@ -13,12 +13,12 @@ use brdfit_core::brdf::Params;
 use clap::Args;
 use rayon::prelude::*;
 
-use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
 use crate::output::deliver;
 use crate::plot::picture;
+use crate::streams::Streams;
 use provenance::Source;
 use section::Section;
 

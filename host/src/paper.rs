@@ -9,10 +9,10 @@ use brdfit_core::brdf::NAMES;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::cli::Streams;
 use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
 use crate::error::Error;
 use crate::output::{Format, deliver};
+use crate::streams::Streams;
 
 /// What noise the synthetic sets have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]

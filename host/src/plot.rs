@@ -154,7 +154,7 @@ fn panels(samples: &[Sample<f64>]) -> Vec<Panel> {
         });
         let forward = Real::sin_cos(sample.delta_phi).1 < 0.0;
         let theta_s = if forward { sample.theta_s } else { -sample.theta_s };
-        panel.points.push((theta_s.to_degrees(), axis::log10(sample.brdf)));
+        panel.points.push((theta_s.to_degrees(), svg::log10(sample.brdf)));
     }
     groups.into_values().collect()
 }

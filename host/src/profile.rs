@@ -63,6 +63,23 @@ pub struct Profile {
     pub intervals: [Interval; 2],
 }
 
+/// What the command found about one scan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Findings {
+    /// The scan's name.
+    pub name: String,
+    /// Its fit.
+    pub outcome: Outcome,
+    /// One for each parameter asked for.
+    pub profiles: Vec<Profile>,
+    /// The parameters of each copy; empty without bootstrap.
+    pub copies: Vec<Params<f64>>,
+    /// The number of copies at each end of an interval whose thresholds are measured; 0 for those of the F test.
+    pub calibrated: u32,
+    /// The seed of the search and of the copies.
+    pub seed: u64,
+}
+
 impl Profile {
     /// Rise of the cost of a point above the best, over the variance of a residual; dimensionless.
     pub fn rise(&self, point: &Point) -> f64 {

@@ -1,12 +1,12 @@
 //! `brdfit completions` and `brdfit man`: what a shell and a reader of manuals want.
 
-use clap::Args;
+use clap::{Args, Command};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use crate::cli::{self, Streams};
 use crate::error::Error;
 use crate::output::deliver;
+use crate::streams::Streams;
 
 /// Prints the completions for a shell
 #[derive(Args, Debug)]
@@ -24,22 +24,21 @@ pub struct Manual {
     command: Option<String>,
 }
 
-/// Runs `brdfit completions`.
+/// Runs `brdfit completions` for the program of these commands.
 ///
 /// # Errors
 /// Standard output breaks.
-pub fn completions(arguments: &Completions, streams: &mut Streams) -> Result<(), Error> {
+pub fn completions(arguments: &Completions, mut program: Command, streams: &mut Streams) -> Result<(), Error> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut cli::command(), "brdfit", &mut script);
+    clap_complete::generate(arguments.shell, &mut program, "brdfit", &mut script);
     deliver(&script, None, streams.output)
 }
 
-/// Runs `brdfit man`.
+/// Runs `brdfit man` for the program of these commands.
 ///
 /// # Errors
 /// There is no such command, or standard output breaks.
-pub fn manual(arguments: &Manual, streams: &mut Streams) -> Result<(), Error> {
-    let mut program = cli::command();
+pub fn manual(arguments: &Manual, mut program: Command, streams: &mut Streams) -> Result<(), Error> {
     program.build();
     let page = match &arguments.command {
         None => program,

@@ -9,10 +9,10 @@ use clap::{Args, ValueEnum};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-use crate::cli::Streams;
 use crate::error::{Error, shown};
 use crate::input::azimuth;
 use crate::output::{deliver, shortest};
+use crate::streams::Streams;
 use crate::{engine, options};
 
 /// Computes the BRDF at given angles and parameters

@@ -12,11 +12,11 @@ use std::path::PathBuf;
 use brdfit_core::brdf::ALL;
 use clap::Args;
 
-use crate::cli::Streams;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options;
 use crate::output::{Format, OutputArguments};
+use crate::streams::Streams;
 use assess::{Assessment, assess};
 
 /// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases

@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 use std::fs;
 
-use brdfit::cli::{Streams, run};
+use brdfit::cli::run;
+use brdfit::streams::Streams;
 use tempfile::TempDir;
 
 /// What a call left behind.

@@ -8,8 +8,8 @@ use clap::Args;
 
 use super::record::{self, Head, Record};
 use super::results::Form;
-use crate::cli::{Ended, Streams};
 use crate::error::Error;
+use crate::streams::{Ended, Streams};
 
 /// Makes one result of the parts of a batch
 #[derive(Args, Debug)]

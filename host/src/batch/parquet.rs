@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
-use super::results::{RowsIn, cells};
+use super::record::{RowsIn, cells};
 
 /// Columns of words; what is named nowhere here is f64.
 const TEXT: [&str; 8] = [

@@ -1,5 +1,6 @@
 //! What is kept of a fitted file: one line of JSON, in a file that begins with a line that says of which batch it is.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -71,6 +72,20 @@ pub enum Row {
     Cells(Vec<String>),
     /// A JSON object.
     Object(String),
+}
+
+/// Rows as they come.
+pub type RowsIn<'a> = &'a mut dyn Iterator<Item = io::Result<Row>>;
+
+/// The cells of a row of a table.
+///
+/// # Errors
+/// It is an object.
+pub fn cells(row: Row) -> io::Result<Vec<String>> {
+    match row {
+        Row::Cells(cells) => Ok(cells),
+        Row::Object(_) => Err(io::Error::other("a JSON object is no row of a table")),
+    }
 }
 
 /// A line of Table 3 of the paper.

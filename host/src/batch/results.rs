@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::record::{Record, Row, Rows};
+use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
 
@@ -80,9 +80,6 @@ pub fn write(
     }
 }
 
-/// Rows as they come.
-pub type RowsIn<'a> = &'a mut dyn Iterator<Item = io::Result<Row>>;
-
 fn csv(columns: &[String], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(columns)?;
@@ -90,17 +87,6 @@ fn csv(columns: &[String], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> 
         writer.write_record(cells(row?)?)?;
     }
     writer.flush()
-}
-
-/// The cells of a row of a table.
-///
-/// # Errors
-/// It is an object.
-pub fn cells(row: Row) -> io::Result<Vec<String>> {
-    match row {
-        Row::Cells(cells) => Ok(cells),
-        Row::Object(_) => Err(io::Error::other("a JSON object is no row of a table")),
-    }
 }
 
 fn json(rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::record::{Line, Record};
-use crate::cli::{Ended, Streams};
 use crate::error::Error;
+use crate::streams::{Ended, Streams};
 
 /// Lines that are printed; means are over all.
 const SHOWN: usize = 100;

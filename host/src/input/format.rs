@@ -1,50 +1,9 @@
-//! The formats of files, and how one is known by its content.
+//! How the format of a file is known by its content, and which reader reads it.
 
-use clap::ValueEnum;
-use serde::Serialize;
-
-use super::options::ReadOptions;
+use super::options::{Format, ReadOptions};
 use super::raw::RawScan;
 use super::{astm, bird, bytes, fred, lumos, matrix, merl, table, zemax};
 use crate::error::Error;
-
-/// A format of files with scans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// Named columns: CSV, TSV, semicolons or spaces
-    Table,
-    /// Angles of incidence in the first row, scattering angles in the first column
-    Matrix,
-    /// ASTM E1392 or E2387 text
-    Astm,
-    /// EURAMET BiRD universal BRDF JSON
-    Bird,
-    /// Zemax tabular BSDF
-    Zemax,
-    /// FRED text
-    Fred,
-    /// LUMOS or ScatterWorks text
-    Lumos,
-    /// MERL binary
-    Merl,
-}
-
-impl Format {
-    /// What people call it.
-    pub fn title(self) -> &'static str {
-        match self {
-            Format::Table => "table with named columns",
-            Format::Matrix => "matrix",
-            Format::Astm => "ASTM E1392",
-            Format::Bird => "BiRD JSON",
-            Format::Zemax => "Zemax tabular BSDF",
-            Format::Fred => "FRED text",
-            Format::Lumos => "LUMOS text",
-            Format::Merl => "MERL binary",
-        }
-    }
-}
 
 /// The scans in a file, as they stand there, and its format.
 ///

@@ -4,7 +4,7 @@ use std::f64::consts::LOG10_E;
 
 use brdfit_core::real::Real;
 
-use super::svg;
+use super::svg::{self, log10};
 
 /// One tick; without a label it is a minor one.
 pub struct Tick {
@@ -172,9 +172,4 @@ fn steps(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 /// A number as short as it goes, with a true minus sign.
 pub fn plain(value: f64) -> String {
     format!("{value}").replace('-', "−")
-}
-
-/// The logarithm that the axis shows.
-pub fn log10(value: f64) -> f64 {
-    Real::ln(value) * LOG10_E
 }

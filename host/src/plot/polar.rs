@@ -7,8 +7,9 @@ use brdfit_core::brdf::Params;
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 
-use super::axis::{log10, plain};
+use super::axis::plain;
 use super::residuals::{by_angle, signed_theta_s};
+use super::svg::log10;
 use super::{POINTS, degrees, svg};
 use crate::engine::ln_f;
 

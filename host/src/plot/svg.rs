@@ -1,6 +1,9 @@
 //! The few marks that the picture needs, as SVG text; paths go in relative steps of a tenth of a pixel to stay short.
 
+use std::f64::consts::LOG10_E;
 use std::fmt::Write;
+
+use brdfit_core::real::Real;
 
 /// The best curve.
 pub const THICK: &str = "stroke=\"#f08a24\" stroke-width=\"3.5\"";
@@ -81,7 +84,7 @@ pub fn number(value: f64) -> String {
     if !(1e-3..1e4).contains(&value.abs()) {
         return scientific(value);
     }
-    let decimals = (3 - super::axis::log10(value.abs()).floor() as i32).max(0) as usize;
+    let decimals = (3 - log10(value.abs()).floor() as i32).max(0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').into()
@@ -115,4 +118,9 @@ pub fn letters(text: &str) -> usize {
 /// Plain text as SVG.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// The logarithm to the base of 10.
+pub fn log10(value: f64) -> f64 {
+    Real::ln(value) * LOG10_E
 }

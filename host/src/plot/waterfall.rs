@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::axis::{Axis, log10};
+use super::axis::Axis;
+use super::svg::log10;
 use super::{frame, svg};
 use crate::engine::Minimum;
 

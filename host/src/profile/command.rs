@@ -2,20 +2,20 @@
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::{NAMES, Params, has};
+use brdfit_core::brdf::{NAMES, has};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::{Profile, json, profile, text};
+use super::{Findings, Profile, json, profile, text};
 use crate::bootstrap::bootstrap;
 use crate::choose;
-use crate::cli::Streams;
-use crate::engine::{FitError, FitOptions, Outcome, robust};
+use crate::engine::{FitError, FitOptions, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::{SearchArguments, term_names};
 use crate::output::{Format, OutputArguments};
 use crate::plot::{self, picture};
+use crate::streams::Streams;
 
 /// Shows which values of a parameter a scan allows: the cost over it, minimised over the others
 #[derive(Args, Debug)]
@@ -42,23 +42,6 @@ pub struct Arguments {
     plot: Option<PathBuf>,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-/// What the command found about one scan.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Findings {
-    /// The scan's name.
-    pub name: String,
-    /// Its fit.
-    pub outcome: Outcome,
-    /// One for each parameter asked for.
-    pub profiles: Vec<Profile>,
-    /// The parameters of each copy; empty without bootstrap.
-    pub copies: Vec<Params<f64>>,
-    /// The number of copies at each end of an interval whose thresholds are measured; 0 for those of the F test.
-    pub calibrated: u32,
-    /// The seed of the search and of the copies.
-    pub seed: u64,
 }
 
 /// Runs the subcommand.

@@ -3,8 +3,7 @@
 use brdfit_core::brdf::NAMES;
 use serde::Serialize;
 
-use super::command::Findings;
-use super::{Interval, LEVELS, Profile};
+use super::{Findings, Interval, LEVELS, Profile};
 use crate::bootstrap::quantile;
 
 #[derive(Serialize)]

@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use brdfit_core::brdf::NAMES;
 
-use super::command::Findings;
-use super::{End, Interval, LEVELS};
+use super::{End, Findings, Interval, LEVELS};
 use crate::bootstrap::quantile;
 use crate::uncertainty::text::{short, significant};
 use crate::uncertainty::words::percent;

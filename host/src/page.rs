@@ -5,6 +5,8 @@ mod provenance;
 mod results;
 mod section;
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,6 +46,7 @@ pub struct Arguments {
 }
 
 /// A scan to report.
+#[derive(Clone)]
 struct Subject {
     measurement: Measurement,
     source: Source,
@@ -111,6 +114,7 @@ fn of_results(
     arguments: &Arguments,
     streams: &mut Streams,
 ) -> Result<Vec<Subject>, Error> {
+    let mut files: HashMap<PathBuf, Vec<Subject>> = HashMap::new();
     let mut found = Vec::new();
     for one in fitted {
         let stored = match one.params {
@@ -122,16 +126,22 @@ fn of_results(
             }
         };
         let file = one.file.display().to_string();
-        let bytes = input::read_bytes(std::slice::from_ref(&one.file), &mut std::io::empty());
-        let bytes =
-            bytes.map_err(|error| error.help(format!("{name} names it; call report where the fit was made")))?;
-        let all = bytes.iter().map(|(file, bytes)| scans(file, bytes, &arguments.read));
-        let all: Vec<Vec<Subject>> = all.collect::<Result<_, _>>()?;
-        let subject = all
-            .into_iter()
-            .flatten()
-            .find(|subject| subject.measurement.name == one.scan);
-        let mut subject = subject.ok_or_else(|| {
+        // A file with many scans is read once.
+        let all = match files.entry(one.file) {
+            Entry::Occupied(read) => read.into_mut(),
+            Entry::Vacant(place) => {
+                let bytes = input::read_bytes(std::slice::from_ref(place.key()), &mut std::io::empty());
+                let help = || format!("{name} names it; call report where the fit was made");
+                let bytes = bytes.map_err(|error| error.help(help()))?;
+                let mut all = Vec::new();
+                for (file, bytes) in bytes {
+                    all.extend(scans(&file, &bytes, &arguments.read)?);
+                }
+                place.insert(all)
+            }
+        };
+        let subject = all.iter().find(|subject| subject.measurement.name == one.scan);
+        let mut subject = subject.cloned().ok_or_else(|| {
             let scan = one.scan.as_deref().unwrap_or("without a name");
             Error::new(format!("there is no scan {scan}, which {name} names")).in_file(file)
         })?;

@@ -1,12 +1,22 @@
 //! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
 
-use super::raw::{Places, RawScan, Row, Weight};
-use super::rows::{self, number};
-use super::units::{Angles, Quantity};
 use crate::error::Error;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::rows::{self, number};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "matrix",
+    title: "matrix",
+    about: "Angles of incidence in the first row, scattering angles in the first column",
+    reader: Reader::Text { is, read },
+};
 
 /// True if the first row has numbers in all cells but the first.
-pub fn is(text: &str) -> bool {
+fn is(text: &str) -> bool {
     let mut found = None;
     // The first row is enough, and the error stops there.
     let _ = rows::for_each(text, |_, cells| {
@@ -24,7 +34,7 @@ pub fn is(text: &str) -> bool {
 ///
 /// # Errors
 /// A cell is no number, or a row is of another length.
-pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut head: Vec<f64> = Vec::new();
     let mut body: Vec<(u64, f64, Vec<f64>)> = Vec::new();
     rows::for_each(text, |line, cells| {
@@ -81,6 +91,10 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
 
     #[test]
     fn the_first_row_has_the_angles_of_incidence() {

@@ -1,12 +1,22 @@
 //! The text of FRED: two header lines, then for each direction of incidence a line with its specular direction, and rows `theta_s phi_s bsdf`.
 
-use super::raw::{Places, RawScan, Row, Weight};
-use super::rows::{self, number};
-use super::units::{Angles, Quantity};
 use crate::error::{Error, shown};
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::rows::{self, number};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "fred",
+    title: "FRED text",
+    about: "FRED text",
+    reader: Reader::Text { is, read },
+};
 
 /// True if the first line is theirs.
-pub fn is(text: &str) -> bool {
+fn is(text: &str) -> bool {
     let words = text.lines().next().unwrap_or("").split_whitespace();
     words.eq(["type", "bsdf_data"])
 }
@@ -15,7 +25,7 @@ pub fn is(text: &str) -> bool {
 ///
 /// # Errors
 /// Angles are not in degrees, a row has other than two or three numbers, or no specular direction stands before it.
-pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
         names: Vec::new(),
         angles: Angles::Deg,
@@ -94,6 +104,10 @@ fn format(settings: &[&str]) -> Result<(Quantity, f64), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
 
     const TEXT: &str =
         "type bsdf_data\nformat angles=deg bsdf=value scale=2\n10\t0\n-80\t0\t0.25\n10 0 1\n30 5\n20 45 3\n";

@@ -1,12 +1,22 @@
 //! The text of LUMOS and ScatterWorks: rows `phi_i theta_i phi_o theta_o brdf` in degrees, where phi is the zenith angle and theta the azimuth.
 
-use super::raw::{Places, RawScan, Row, Weight};
-use super::rows::{self, number};
-use super::units::{Angles, Quantity};
 use crate::error::Error;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::rows::{self, number};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "lumos",
+    title: "LUMOS text",
+    about: "LUMOS or ScatterWorks text",
+    reader: Reader::Text { is, read },
+};
 
 /// True if a remark names the columns in that order.
-pub fn is(text: &str) -> bool {
+fn is(text: &str) -> bool {
     let remarks = text.lines().take_while(|line| rows::is_remark(line));
     let mut names = remarks.map(|line| line.trim_start_matches(['#', ' ']).split_whitespace());
     names.any(|names| names.eq(["phi_i", "theta_i", "phi_o", "theta_o", "brdf"]))
@@ -16,7 +26,7 @@ pub fn is(text: &str) -> bool {
 ///
 /// # Errors
 /// A row has other than five numbers, or there is none.
-pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
         names: Vec::new(),
         angles: Angles::Deg,
@@ -53,6 +63,10 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
 
     #[test]
     fn phi_is_the_zenith_angle() {

@@ -2,11 +2,20 @@
 
 use libm::{atan2, sqrt};
 
-use super::direction::sin_cos;
-use super::options::ReadOptions;
-use super::raw::{Places, RawScan, Row, Weight};
-use super::units::{Angles, Quantity};
 use crate::error::Error;
+use crate::input::direction::sin_cos;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "merl",
+    title: "MERL binary",
+    about: "MERL binary",
+    reader: Reader::Bytes { is, read },
+};
 
 /// Bins of theta_h, theta_d and phi_d.
 const BINS: [usize; 3] = [90, 90, 180];
@@ -17,7 +26,7 @@ const COLOURS: [(&str, f64); 3] = [("R", 1.0 / 1500.0), ("G", 1.15 / 1500.0), ("
 const THIN: u32 = 97;
 
 /// True if the file begins with the numbers of its bins.
-pub fn is(file: &[u8]) -> bool {
+fn is(file: &[u8]) -> bool {
     let header = BINS.map(|bins| (bins as u32).to_le_bytes()).concat();
     file.starts_with(&header)
 }
@@ -28,7 +37,7 @@ pub fn is(file: &[u8]) -> bool {
 ///
 /// # Errors
 /// The file is no MERL file, or has another size.
-pub fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let size = HEADER + COLOURS.len() * COUNT * 8;
     if !is(file) || file.len() != size {
         let what = format!(

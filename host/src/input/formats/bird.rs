@@ -3,13 +3,23 @@
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use super::bytes::Lines;
-use super::raw::{Places, RawScan, Row, Weight};
-use super::units::{Angles, Quantity};
 use crate::error::{Error, shown};
+use crate::input::bytes::Lines;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "bird",
+    title: "BiRD JSON",
+    about: "EURAMET BiRD universal BRDF JSON",
+    reader: Reader::Text { is, read },
+};
 
 /// True of a JSON object.
-pub fn is(text: &str) -> bool {
+fn is(text: &str) -> bool {
     text.trim_start().starts_with('{')
 }
 
@@ -55,7 +65,7 @@ struct Uncertainty {
 ///
 /// # Errors
 /// It is no JSON, a required array is missing, arrays differ in length, or a unit or a number is not understood.
-pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let file: File = serde_json::from_str(text).map_err(|error| {
         let what = error.to_string();
         let what = what.split(" at line ").next().unwrap_or(&what).to_string();
@@ -196,6 +206,10 @@ fn degrees(name: &str, unit: &str, angle: f64) -> Result<f64, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
 
     const TEXT: &str = r#"{"metadata": {"any": [1]}, "data": {
 "wavelength_i": {"unit": "nm", "values": [550, 650, 550]},

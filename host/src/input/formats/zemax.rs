@@ -1,13 +1,23 @@
 //! Tabular BSDF of Zemax ("BSDF Data Interchange"): angles from the specular ray, blocks of numbers for each rotation and angle of incidence.
 
-use super::direction;
-use super::raw::{Places, RawScan, Row, Weight};
-use super::rows::is_remark;
-use super::units::{Angles, Quantity};
 use crate::error::{Error, shown};
+use crate::input::direction;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::rows::is_remark;
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "zemax",
+    title: "Zemax tabular BSDF",
+    about: "Zemax tabular BSDF",
+    reader: Reader::Text { is, read },
+};
 
 /// True if the text has the keywords that other `.bsdf` files lack.
-pub fn is(text: &str) -> bool {
+fn is(text: &str) -> bool {
     let begins = |word: &str| text.lines().any(|line| line.split_whitespace().next() == Some(word));
     begins("AngleOfIncidence") && begins("ScatterRadial") && begins("DataBegin")
 }
@@ -68,7 +78,7 @@ impl<'a> Words<'a> {
 ///
 /// # Errors
 /// A keyword or a number is missing, or the data are of transmission.
-pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let lines = (1..).zip(text.lines()).filter(|(_, line)| !is_remark(line));
     let words: Vec<Word> = lines
         .flat_map(|(number, line)| line.split_whitespace().map(move |word| (number, word)))
@@ -157,6 +167,10 @@ fn direction(theta_i: f64, azimuth: f64, radial: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
 
     const TEXT: &str = "# remark\nSource Measured\nSymmetry  PlaneSymmetrical\nSpectralContent\tMonochrome\n\
         ScatterType BRDF\nSampleRotation 1\n0\nAngleOfIncidence 2\n10 70\nScatterAzimuth 3\n0 90\n180\n\

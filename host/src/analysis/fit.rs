@@ -49,6 +49,18 @@ pub struct AngleOfIncidence {
     pub rms_ln: f64,
 }
 
+impl AngleOfIncidence {
+    /// The angle in degrees as it was measured, without what the way through radians adds.
+    pub fn degrees(&self) -> f64 {
+        rounded(self.theta_i.to_degrees())
+    }
+}
+
+/// Degrees as they stand in files have few decimals.
+fn rounded(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
+}
+
 impl FittedScan {
     /// Puts together what the engine found.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
@@ -95,9 +107,8 @@ fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample
     if let Some(robust) = &outcome.robust {
         let mut counts = left_out::Counts::default();
         for &outlier in robust.outliers.iter().rev() {
-            // Degrees as they stand in the file have few decimals.
             let theta_i = samples.remove(outlier).theta_i.to_degrees();
-            counts.add(left_out::Reason::Outlier, (theta_i * 1e9).round() / 1e9);
+            counts.add(left_out::Reason::Outlier, rounded(theta_i));
         }
         left_out.extend(counts.list());
     }

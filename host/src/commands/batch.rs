@@ -24,6 +24,7 @@ use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::replace_with;
+use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
 use journal::Journal;
 use record::{Head, Record};
@@ -132,7 +133,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 /// A record is broken, or the output can not be written.
 pub(super) fn deliver(
     form: Form,
-    columns: &[String],
+    columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     out: &Path,
     streams: &mut Streams,

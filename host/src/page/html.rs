@@ -5,26 +5,18 @@ use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::section::Section;
-use crate::analysis::derived::Value;
+use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::input::left_out;
 use crate::names;
 use crate::number::{digits, percent, short};
 use crate::output::shortest;
+use crate::parameters::MEANINGS;
+use crate::result::columns::{Json, Row, of_fits};
 use crate::result::words::{self, shown};
 use crate::terms::term_names;
 
 const STYLE: &str = include_str!("style.css");
-
-/// What the parameters mean, in their order.
-const MEANINGS: [&str; 6] = [
-    "diffuse reflectance",
-    "weight of the surface lobe",
-    "weight of the volume lobe",
-    "slope of the facets",
-    "index of refraction, real part",
-    "index of refraction, imaginary part",
-];
 
 /// Rows of the table of minima at most.
 const MINIMA: usize = 12;
@@ -99,6 +91,7 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
                 @if number == 3 { (minima(section)) }
                 @if number == 4 { (angles(section)) }
             }
+            (numbers(section))
             (provenance(section, command))
         }
     }
@@ -121,7 +114,7 @@ fn summary(section: &Section) -> Markup {
             @for open in undetermined(&outcome.params, known, &report.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
-            @if report.derived.iter().any(|at| at.reflectance.value > 1.0) {
+            @if !report.derived.iter().all(Derived::conserves_energy) {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
             }
             @if section.missed() {
@@ -250,7 +243,28 @@ fn angles(section: &Section) -> Markup {
                     td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
                     td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
-                    td { (with_error(at.reflectance)) @if at.reflectance.value > 1.0 { " (above 1)" } }
+                    td { (with_error(at.reflectance)) @if !at.conserves_energy() { " (above 1)" } }
+                } }
+            }
+        }
+    }
+}
+
+/// Every column of the tables of results but the time, which is another each time.
+fn numbers(section: &Section) -> Markup {
+    let row = Row::from(&section.report);
+    let columns = of_fits().into_iter().filter(|column| column.json != Json::Time);
+    let cells = columns.map(|column| (column.cell(&row), column));
+    html! {
+        table {
+            caption { "This fit as in the CSV and JSON of brdfit, with all digits." }
+            thead { tr { th.text { "column" } th { "value" } th.text { "unit" } th.text { "meaning" } } }
+            tbody {
+                @for (cell, column) in cells.filter(|(cell, _)| !cell.is_empty()) { tr {
+                    td.text { code { (column.name) } }
+                    td { (cell.text()) }
+                    td.text { (column.unit) }
+                    td.text { (column.about) }
                 } }
             }
         }

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
+use crate::result::cell::{Cell, Kind};
 
 /// The form of the file of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -62,7 +63,7 @@ impl Form {
 /// A record is broken, or the output can not be written.
 pub fn write(
     form: Form,
-    columns: &[String],
+    columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     out: &mut (dyn Write + Send),
 ) -> io::Result<()> {
@@ -80,11 +81,11 @@ pub fn write(
     }
 }
 
-fn csv(columns: &[String], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
+fn csv(columns: &[(String, Kind)], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns)?;
+    writer.write_record(columns.iter().map(|(name, _)| name))?;
     for row in rows {
-        writer.write_record(cells(row?)?)?;
+        writer.write_record(cells(row?)?.iter().map(Cell::text))?;
     }
     writer.flush()
 }

@@ -3,6 +3,7 @@
 //! A further column is one more entry here.
 
 use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
 use crate::analysis::derived::Derived;
@@ -123,7 +124,7 @@ impl Column {
 
 /// The columns of a table with one row a fitted scan.
 pub fn of_fits() -> Vec<Column> {
-    [scan(), asked(), parameters(), found(), of_scan()]
+    [scan(), asked(), parameters(), found(), known(), of_scan()]
         .into_iter()
         .flatten()
         .collect()
@@ -139,7 +140,10 @@ pub fn of_minima() -> Vec<Column> {
 
 /// The columns of a table with one row a fit, of whose scan nothing is known but the samples.
 pub fn of_outcomes() -> Vec<Column> {
-    [asked(), parameters(), found()].into_iter().flatten().collect()
+    [asked(), parameters(), found(), known()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// What was fitted.
@@ -238,6 +242,22 @@ fn found() -> Vec<Column> {
     ]
 }
 
+/// How well the parameters are known.
+fn known() -> Vec<Column> {
+    let degrees = whole(
+        "degrees_of_freedom",
+        "samples less parameters inside their bounds",
+        Json::Otherwise,
+        |row| Some(row.outcome.uncertainty.degrees_of_freedom as u64),
+    );
+    let stderr = |row: &Row, index: usize| {
+        let known = &row.outcome.uncertainty;
+        (known.places[index] == Some(Place::Inside)).then_some(known.stderr[index])
+    };
+    let one = |index| parameter("stderr_", "standard error of the ", index, stderr);
+    std::iter::once(degrees).chain((0..NAMES.len()).map(one)).collect()
+}
+
 /// What is known by the scan.
 fn of_scan() -> Vec<Column> {
     use Json::{Found, Otherwise, Time};
@@ -254,6 +274,9 @@ fn of_scan() -> Vec<Column> {
             Found,
             |row| row.scan?.chi2,
         ),
+        whole("left_out", "rows of the scan that were left out", Otherwise, |row| {
+            Some(row.scan?.left_out.iter().map(|one| one.samples as u64).sum())
+        }),
         flag("energy_conserved", conserved, Otherwise, |row| {
             Some(row.scan?.derived.iter().all(Derived::conserves_energy))
         }),

@@ -166,6 +166,10 @@ fn csv_and_json_have_the_same_values() {
     let (head, row) = (rows.next().unwrap(), rows.next().unwrap());
     let mut compared = Vec::new();
     for (name, cell) in head.into_iter().zip(row) {
+        if let Some(parameter) = name.strip_prefix("stderr_") {
+            let stderr = &object["uncertainty"]["stderr"][parameter];
+            assert_eq!(cell.parse().ok(), stderr.as_f64(), "{name}");
+        }
         let value = [&object, &object["parameters"]]
             .into_iter()
             .find_map(|members| members.get(name));

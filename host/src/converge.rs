@@ -14,7 +14,7 @@ use indicatif::ProgressBar;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options;
-use crate::output::{OutputArguments, TableFormat};
+use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::paper::embedded;
 use crate::plot::{self, picture};
 use crate::streams::Streams;
@@ -57,6 +57,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let terms = options::terms(&arguments.terms)?;
     let truth = arguments.truth.as_deref();
     let truth = truth.map(|list| options::all_parameters(list, "--truth")).transpose()?;
+    let (target, picture) = arguments
+        .output
+        .targets(arguments.plot.as_deref(), arguments.scan.as_slice())?;
     let measurement = match &arguments.scan {
         Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
         None => None,
@@ -88,10 +91,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Json => report::json(&studies, arguments.seeds),
         TableFormat::Csv => report::csv(&studies),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &plot::converge_svg(&studies, arguments.seeds))?;
+    if let Some(picture) = &picture {
+        picture::save(picture, &plot::converge_svg(&studies, arguments.seeds))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
 }

@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 
 use crate::error::Error;
 use crate::input::{STDIN, bytes};
-use crate::output::deliver;
+use crate::output::{deliver, target};
 use crate::streams::Streams;
 use model::Model;
 
@@ -71,6 +71,7 @@ enum Form {
 /// # Errors
 /// There is no such result, or its parameters have no BRDF.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = target(arguments.output.as_deref(), arguments.result.as_slice())?;
     let mut model = match (&arguments.result, &arguments.params) {
         (Some(path), _) => {
             let bytes = if path.as_os_str() == STDIN {
@@ -99,10 +100,20 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Form::Rust => constants::rust(&model),
         Form::Bird => bird::write(&model),
     };
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }
 
-/// The model's name as a word of a program: letters, digits and underscores.
+/// Words that mean something else to Python, C, C++ or Rust, or are models of Mitsuba's own.
+const RESERVED: &str = "abstract alignas alignof and as asm assert async auto await become bitand bitor blendbsdf bool box break bumpmap \
+    case catch char class compl concept conductor const consteval constexpr constinit continue crate decltype def default del delete \
+    dielectric diffuse do double dr dyn elif else enum except explicit export extern false final finally float fn for friend from \
+    gen global goto hair hide if impl import in inline int is lambda let loop long macro mask match measured mi mod move mut mutable \
+    namespace new noexcept none nonlocal normalmap not null nullptr operator or override pass plastic pplastic principled \
+    principledthin private protected pub raise ref register requires restrict retarder return roughconductor roughdielectric \
+    roughplastic self short signed sizeof static struct super switch template thindielectric this throw trait true try twosided \
+    type typedef typeid typename typeof union unsafe unsigned unsized use using virtual void volatile where while with xor yield";
+
+/// The model's name as a word of a program: letters, digits and underscores, and no word of a language.
 fn word(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()
@@ -117,9 +128,32 @@ fn word(name: &str) -> String {
             }
         })
         .collect();
-    if word.starts_with(|c: char| c.is_ascii_alphabetic()) {
+    let reserved = RESERVED.split_whitespace().any(|reserved| reserved == word);
+    if word.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved {
         word
     } else {
         format!("brdf_{word}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers() {
+        for (name, expected) in [
+            ("scans/Black Paint-2.csv", "black_paint_2"),
+            ("class", "brdf_class"),
+            ("mi.csv", "brdf_mi"),
+            ("diffuse", "brdf_diffuse"),
+            ("a\0b\u{202e}c", "a_b_c"),
+            ("2024", "brdf_2024"),
+            ("_x", "brdf__x"),
+            ("", "brdf_"),
+            ("\"\nimport os\n", "brdf___import_os_"),
+        ] {
+            assert_eq!(word(name), expected, "{name:?}");
+        }
     }
 }

@@ -6,6 +6,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::engine::{FitOptions, Method, Precision, TERM_SETS};
 use crate::error::{Error, shown};
+use crate::output::shortest;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
 #[derive(Args, Debug)]
@@ -167,7 +168,7 @@ pub fn check(index: usize, value: f64) -> Result<(), Error> {
     if value >= least && value <= largest {
         return Ok(());
     }
-    Err(Error::new(format!("{} can not be {value}", NAMES[index]))
+    Err(Error::new(format!("{} cannot be {}", NAMES[index], shortest(value)))
         .help(format!("take a number from {least} to {largest}")))
 }
 

@@ -15,7 +15,7 @@ use clap::Args;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options;
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver, json};
 use crate::streams::Streams;
 use assess::{Assessment, assess};
 
@@ -40,6 +40,7 @@ pub struct Arguments {
 /// # Errors
 /// The scan can not be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {
         None => {
             let cases = built_in();
@@ -60,7 +61,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
     };
-    arguments.output.deliver(&text, streams.output)
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }
 
 /// The assessment of every built-in case.
@@ -69,9 +70,4 @@ pub fn built_in() -> Vec<Assessment> {
     let each = cases.iter().map(|case| assess(case.name, &case.samples, ALL));
     each.map(|case| case.expect("the built-in cases are valid in both number types"))
         .collect()
-}
-
-fn json(value: &impl serde::Serialize) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }

@@ -76,7 +76,11 @@ fn fitted(job: &Job, mut report: Report, measurement: &Measurement) -> Fitted {
         Rows::Objects => Row::Object(report::json(std::slice::from_ref(&report)).trim_end().to_string()),
         Rows::Cells => {
             let mut cells = table(std::slice::from_ref(&report)).pop().unwrap_or_default();
-            let angles: Vec<String> = line.theta_i.iter().map(f64::to_string).collect();
+            let angles: Vec<String> = line
+                .theta_i
+                .iter()
+                .map(|&angle| crate::output::shortest(angle))
+                .collect();
             cells.extend([
                 angles.join("+"),
                 crate::output::shortest(line.high),

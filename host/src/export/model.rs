@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::engine::ln_f;
 use crate::error::Error;
 use crate::options;
+use crate::plain::plain;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,7 +87,7 @@ impl Model {
             name,
             params: Params::from_array(values),
             stderr,
-            origin: origin.replace(['\n', '\r'], " "),
+            origin: plain(&origin).into_owned(),
         })
     }
 

@@ -9,6 +9,7 @@ use crate::engine::Precision;
 use crate::input::left_out;
 use crate::options::term_names;
 use crate::output::shortest;
+use crate::plain::plain;
 use crate::report::{digits, method_name, stop_meaning};
 use crate::uncertainty::text::{short, shown};
 use crate::uncertainty::words::{percent, undetermined};
@@ -269,7 +270,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (report.file) ", " (section.source.bytes) " bytes" } }
+                tr { th.text { "input" } td.text { (plain(&report.file)) ", " (section.source.bytes) " bytes" } }
                 tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::{Findings, Interval, LEVELS, Profile};
 use crate::bootstrap::quantile;
+use crate::output;
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -87,8 +88,7 @@ pub fn write(findings: &Findings) -> String {
                 .collect(),
         }),
     };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+    output::json(&document)
 }
 
 fn parameter(profile: &Profile, stderr: [f64; 6]) -> Parameter {

@@ -4,7 +4,7 @@ use brdfit_core::brdf::{NAMES, Params};
 
 use super::{Report, method_name, stop_name};
 use crate::options::term_names;
-use crate::output::shortest;
+use crate::output::{shortest, write_row};
 
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(reports: &[Report], minima: bool) -> String {
@@ -19,7 +19,7 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
     let timed = !minima && reports.iter().any(|report| report.elapsed.is_some());
     head.extend(timed.then_some("elapsed_s"));
     // Writing to memory does not fail.
-    let _ = writer.write_record(&head);
+    let _ = write_row(&mut writer, &head);
     for report in reports {
         let outcome = &report.outcome;
         let row = |mse2: f64, params: &Params<f64>| {
@@ -41,7 +41,7 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
                 let mut row = row(minimum.mse2, &minimum.params);
                 let counts = [place as u64 + 1, u64::from(minimum.hits), minimum.first_start];
                 row.extend(counts.map(|count| count.to_string()));
-                let _ = writer.write_record(&row);
+                let _ = write_row(&mut writer, &row);
             }
         } else {
             let mut row = row(outcome.mse2, &outcome.params);
@@ -60,7 +60,7 @@ pub fn csv(reports: &[Report], minima: bool) -> String {
                         .map_or(String::new(), |elapsed| shortest(elapsed.as_secs_f64())),
                 );
             }
-            let _ = writer.write_record(&row);
+            let _ = write_row(&mut writer, &row);
         }
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()

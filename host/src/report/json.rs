@@ -8,6 +8,7 @@ use crate::choose::{self, Choice};
 use crate::engine::Minimum;
 use crate::input::{LeftOut, ReadAs};
 use crate::options::term_names;
+use crate::output;
 use crate::uncertainty::json as known_json;
 
 #[derive(Serialize)]
@@ -123,10 +124,8 @@ fn json_report(report: &Report) -> JsonReport<'_> {
 /// One object for one scan, an array for several.
 pub fn json(reports: &[Report]) -> String {
     let objects: Vec<_> = reports.iter().map(json_report).collect();
-    let written = match objects.as_slice() {
-        [one] => serde_json::to_string_pretty(one),
-        several => serde_json::to_string_pretty(several),
-    };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    written.unwrap_or_default() + "\n"
+    match objects.as_slice() {
+        [one] => output::json(one),
+        several => output::json(&several),
+    }
 }

@@ -7,7 +7,7 @@ use brdfit_core::brdf::{NAMES, has};
 use super::{AngleOfIncidence, Report, digits, method_name, stop_meaning, stop_name};
 use crate::choose::Choice;
 use crate::engine::{Minimum, Precision};
-use crate::input::left_out;
+use crate::input::{label, left_out};
 use crate::options::term_names;
 use crate::uncertainty::text as known_text;
 
@@ -21,10 +21,7 @@ fn page(report: &Report, minima: bool) -> String {
     let (outcome, options) = (&report.outcome, &report.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(match &report.scan {
-        Some(scan) => format!("{} [{scan}]", report.file),
-        None => report.file.clone(),
-    });
+    line(label(&report.file, report.scan.as_deref()));
     line(format!("  read as    {}", report.read_as));
     line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
     if let Some(summary) = left_out::summary(&report.left_out) {

@@ -93,12 +93,12 @@ fn each_error_of_a_file_names_its_place() {
             "",
             "2 samples can not determine 6 parameters",
         ),
-        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":1", "not UTF-8"),
+        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":3", "not text"),
         (
             "latin1",
-            b"theta_i,theta_s,brdf\n# Stra\xdfe\n".into(),
-            ":2",
-            "not UTF-8",
+            b"theta_i,theta_s,brdf\n# Stra\xdfe\n45,\x01,1\n".into(),
+            ":3",
+            "not text",
         ),
     ];
     let folder = tempfile::tempdir().unwrap();
@@ -119,7 +119,7 @@ fn errors_of_options_are_one_line() {
     let (_folder, file) = scene();
     let cases: [(&[&str], &str); 13] = [
         (&["--bounds", "n=2:1"], "wrong way round"),
-        (&["--bounds", "n=1:NaN"], "can not be NaN"),
+        (&["--bounds", "n=1:NaN"], "cannot be NaN"),
         (&["--bounds", "n=0.5:2"], "n cannot be 0.5"),
         (&["--bounds", "m=0:1"], "m cannot be 0"),
         (&["--bounds", "kappa=-1:1"], "kappa cannot be -1"),
@@ -136,7 +136,7 @@ fn errors_of_options_are_one_line() {
         ),
         (&["--terms", "volume"], "--terms takes one of: "),
         (&["--terms", "gloss"], "no term 'gloss'"),
-        (&["--output", "missing/folder/out.json"], "can not be written"),
+        (&["--output", "missing/folder/out.json"], "cannot be written"),
     ];
     for (options, what) in cases {
         let message = fail(&[&["fit", &file], options].concat());

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 
+/// For a command that reads nothing.
+pub const NO_INPUTS: [&Path; 0] = [];
+
 /// A file that may be written: no input of the command, in a folder that takes files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
@@ -200,8 +203,6 @@ fn denied(path: &Path, error: &io::Error) -> Error {
 mod tests {
     use super::*;
 
-    const NONE: [&Path; 0] = [];
-
     fn folder() -> (tempfile::TempDir, impl Fn(&str) -> PathBuf) {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().to_path_buf();
@@ -241,13 +242,13 @@ mod tests {
             ("none/x", "cannot be written"),
             ("file/x", "cannot be written"),
         ] {
-            let error = Target::new(&path(name), &NONE).unwrap_err();
+            let error = Target::new(&path(name), &NO_INPUTS).unwrap_err();
             assert!(error.what.contains(what), "{name}: {error}");
         }
         let mut read_only = fs::metadata(path("file")).unwrap().permissions();
         read_only.set_readonly(true);
         fs::set_permissions(path("file"), read_only).unwrap();
-        let error = Target::new(&path("file"), &NONE).unwrap_err();
+        let error = Target::new(&path("file"), &NO_INPUTS).unwrap_err();
         assert!(error.what.contains("read-only"), "{error}");
         // Nothing is left behind.
         assert_eq!(fs::read_dir(path("")).unwrap().count(), 1);
@@ -257,7 +258,7 @@ mod tests {
     fn two_results_need_two_files() {
         let (_root, path) = folder();
         fs::create_dir(path("inner")).unwrap();
-        let target = |name: &str| Target::new(&path(name), &NONE).unwrap();
+        let target = |name: &str| Target::new(&path(name), &NO_INPUTS).unwrap();
         assert!(Target::differ(&[&target("a"), &target("b")]).is_ok());
         assert!(Target::differ(&[&target("a"), &target("inner/../a")]).is_err());
         fs::write(path("a"), "").unwrap();
@@ -269,7 +270,7 @@ mod tests {
     fn a_failure_leaves_what_was_there() {
         let (_root, path) = folder();
         fs::write(path("file"), "before").unwrap();
-        let target = Target::new(&path("file"), &NONE).unwrap();
+        let target = Target::new(&path("file"), &NO_INPUTS).unwrap();
         let error = target.write_with(|file| {
             file.write_all(b"half")?;
             Err(io::Error::other(Error::new("mine")))
@@ -290,7 +291,7 @@ mod tests {
             fs::set_permissions(path("inner/file"), PermissionsExt::from_mode(mode)).unwrap();
             let _ = fs::remove_file(path("link"));
             symlink("inner/file", path("link")).unwrap();
-            Target::new(&path("link"), &NONE).unwrap().write(b"after").unwrap();
+            Target::new(&path("link"), &NO_INPUTS).unwrap().write(b"after").unwrap();
             assert!(path("link").is_symlink());
             assert_eq!(fs::read(path("inner/file")).unwrap(), b"after");
             assert_eq!(
@@ -300,10 +301,13 @@ mod tests {
         }
         // A link to what is not there yet makes it there.
         symlink("inner/new", path("dangling")).unwrap();
-        Target::new(&path("dangling"), &NONE).unwrap().write(b"new").unwrap();
+        Target::new(&path("dangling"), &NO_INPUTS)
+            .unwrap()
+            .write(b"new")
+            .unwrap();
         assert_eq!(fs::read(path("inner/new")).unwrap(), b"new");
         symlink("b", path("a")).unwrap();
         symlink("a", path("b")).unwrap();
-        assert!(Target::new(&path("a"), &NONE).is_err());
+        assert!(Target::new(&path("a"), &NO_INPUTS).is_err());
     }
 }

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::error::Error;
 use crate::output::shortest;
 use crate::plain::of_cell;
-use crate::report::json::JsonParameters;
+use crate::result::json::JsonParameters;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]

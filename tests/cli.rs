@@ -119,16 +119,16 @@ fn errors_of_options_are_one_line() {
     let (_folder, file) = scene();
     let cases: [(&[&str], &str); 13] = [
         (&["--bounds", "n=2:1"], "wrong way round"),
-        (&["--bounds", "n=1:NaN"], "can not be NaN"),
-        (&["--bounds", "n=0.5:2"], "n can not be 0.5"),
-        (&["--bounds", "m=0:1"], "m can not be 0"),
-        (&["--bounds", "kappa=-1:1"], "kappa can not be -1"),
+        (&["--bounds", "n=1:NaN"], "cannot be NaN"),
+        (&["--bounds", "n=0.5:2"], "n cannot be 0.5"),
+        (&["--bounds", "m=0:1"], "m cannot be 0"),
+        (&["--bounds", "kappa=-1:1"], "kappa cannot be -1"),
         (
             &["--bounds", "alpha=0:1"],
             "the parameters are rho_d, rho_s, rho_v, m, n, kappa",
         ),
         (&["--bounds", "n"], "NAME=LO:HI"),
-        (&["--fix", "rho_d=-1"], "rho_d can not be -1"),
+        (&["--fix", "rho_d=-1"], "rho_d cannot be -1"),
         (&["--fix", "n=1.5", "--bounds", "n=1:2"], "twice"),
         (
             &["--fix", "kappa=0", "--terms", "diffuse,surface"],
@@ -136,7 +136,7 @@ fn errors_of_options_are_one_line() {
         ),
         (&["--terms", "volume"], "--terms takes one of: "),
         (&["--terms", "gloss"], "no term 'gloss'"),
-        (&["--output", "missing/folder/out.json"], "can not be written"),
+        (&["--output", "missing/folder/out.json"], "cannot be written"),
     ];
     for (options, what) in cases {
         let message = fail(&[&["fit", &file], options].concat());

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, shown};
 use crate::input::bytes;
+use crate::input::rows::is_remark;
 
 /// How many bytes tell what a file is.
 const HEAD: usize = 4096;
@@ -113,8 +114,7 @@ pub fn no_table(text: &str) -> Option<Error> {
         let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.trim().is_empty());
         cells.map(|cell| cell.trim().parse::<f64>().is_ok()).collect()
     };
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty());
-    let first = lines.next().unwrap_or("");
+    let first = text.lines().find(|line| !is_remark(line))?;
     let numbers = |line: &str| cells(line).into_iter().filter(|&number| number).count();
     if cells(first).len() > 2 || text.lines().any(|line| numbers(line) > 1) {
         return None;
@@ -168,5 +168,6 @@ mod tests {
                 .contains("begins with 'just text'")
         );
         assert!(no_table("theta_i,theta_s,brdf\n").is_none() && no_table("x\n1 2 3\n").is_none());
+        assert!(no_table("# only a remark\n").is_none());
     }
 }

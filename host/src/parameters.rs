@@ -3,6 +3,7 @@
 use brdfit_core::brdf::{NAMES, Params, has};
 
 use crate::error::{Error, shown};
+use crate::output::shortest;
 use crate::terms::term_names;
 
 /// What the parameters of [`NAMES`] mean.
@@ -38,7 +39,7 @@ pub fn domain(index: usize) -> (f64, f64) {
     }
 }
 
-/// Refuses a value that parameter `index` can not have.
+/// Refuses a value that parameter `index` cannot have.
 ///
 /// # Errors
 /// The value is NaN or outside [`domain`].
@@ -47,7 +48,7 @@ pub fn check(index: usize, value: f64) -> Result<(), Error> {
     if value >= least && value <= largest {
         return Ok(());
     }
-    Err(Error::new(format!("{} can not be {value}", NAMES[index]))
+    Err(Error::new(format!("{} cannot be {}", NAMES[index], shortest(value)))
         .help(format!("take a number from {least} to {largest}")))
 }
 

@@ -2,6 +2,7 @@
 
 mod journal;
 mod list;
+pub(super) mod own;
 #[cfg(feature = "parquet")]
 mod parquet;
 pub(super) mod record;
@@ -11,7 +12,7 @@ pub(super) mod shard;
 mod summary;
 
 use std::io::{self, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
@@ -23,9 +24,10 @@ use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
-use crate::output::replace_with;
+use crate::output;
 use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
+use crate::target::{self, Target};
 use journal::Journal;
 use record::{Head, Record};
 use results::Form;
@@ -73,6 +75,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
     let files = list::files(&arguments.scans, out, streams.input)?;
+    let target = match arguments.shard {
+        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
+        None => output::target(Some(out), &files)?,
+    };
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
         options: asked_for(options, arguments),
@@ -89,7 +95,24 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(folder) => folder.path().join("partial"),
         None => record::partial_path(out, shard),
     };
-    let journal = Mutex::new(Journal::open(kept_in, &head, arguments.resume)?);
+    if target::is_one_of(&kept_in, &files) {
+        return Err(Error::new("this is a scan, and here finished fits are to be kept")
+            .in_file(kept_in.display().to_string())
+            .help("give --out another name"));
+    }
+    if let (Some(target), true, Some(_)) = (&target, arguments.resume, arguments.shard) {
+        journal::take_over(target.path(), &kept_in, &head)?;
+    }
+    let journal = Journal::open(kept_in, &head, arguments.resume)?;
+    for line in &journal.damaged {
+        // If standard error is closed, the results are right all the same.
+        let _ = writeln!(
+            streams.errors,
+            "{}:{line}: this is no whole record; the fit that it may have been of is made again",
+            journal.path.display()
+        );
+    }
+    let journal = Mutex::new(journal);
     let job = run::Job {
         files: &files,
         options,
@@ -114,14 +137,13 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         });
     }
     let mut records = places.iter().map(|&index| journal.record(index));
-    let ended = match arguments.shard {
-        Some(shard) => {
+    let ended = match (arguments.shard, &target) {
+        (Some(_), Some(target)) => {
             let mut summary = Summary::default();
-            let path = record::shard_path(out, shard);
-            replace_with(&path, |file| part(&head, &mut summary.of(&mut records), file))?;
+            target.write_with(|file| part(&head, &mut summary.of(&mut records), file))?;
             summary.tell(true, streams)
         }
-        None => deliver(form, &head.columns, &mut records, out, streams)?,
+        _ => deliver(form, &head.columns, &mut records, target.as_ref(), streams)?,
     };
     journal.remove();
     Ok(ended)
@@ -130,17 +152,18 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 /// Writes the results of a whole batch, and tells how it went; the result says how it went.
 ///
 /// # Errors
-/// A record is broken, or the output can not be written.
+/// A record is broken, or the output cannot be written.
 pub(super) fn deliver(
     form: Form,
     columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
-    out: &Path,
+    target: Option<&Target>,
     streams: &mut Streams,
 ) -> Result<Ended, Error> {
     let mut summary = Summary::default();
-    let to_stdout = out.as_os_str() == STDIN;
-    if to_stdout {
+    if let Some(target) = target {
+        target.write_with(|file| results::write(form, columns, &mut summary.of(records), file))?;
+    } else {
         let mut copy = || -> io::Result<()> {
             let mut scratch = tempfile::tempfile()?;
             results::write(form, columns, &mut summary.of(records), &mut scratch)?;
@@ -153,16 +176,12 @@ pub(super) fn deliver(
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 return Err(error
                     .downcast::<Error>()
-                    .unwrap_or_else(|error| Error::new(format!("standard output can not be written: {error}"))));
+                    .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}"))));
             }
             _ => {}
         }
-    } else {
-        replace_with(out, |file| {
-            results::write(form, columns, &mut summary.of(records), file)
-        })?;
     }
-    Ok(summary.tell(!to_stdout, streams))
+    Ok(summary.tell(target.is_some(), streams))
 }
 
 /// Writes the records of a part, in order.

@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::engine::models::{Fitted, MODELS, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments, shortest};
+use crate::output::{self, Format, OutputArguments, deliver, shortest};
 use crate::plot::{self, picture};
 use crate::streams::Streams;
 
@@ -40,16 +40,18 @@ pub struct Arguments {
 /// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = choose(arguments.models.as_deref())?;
+    let inputs = std::slice::from_ref(&arguments.scan);
+    let (target, plot) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let fits = compare(&models, &measurement, arguments.seed)?;
     let text = match arguments.output.format {
         Format::Text => text(&measurement, &fits),
         Format::Json => json(&measurement, &fits),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &picture(&measurement, &models, &fits))?;
+    if let Some(plot) = &plot {
+        picture::save(plot, &picture(&measurement, &models, &fits))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }
@@ -131,7 +133,7 @@ fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
         })
         .collect();
     let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
-    format!("{value:#}\n")
+    output::json(&value)
 }
 
 fn picture(measurement: &Measurement, models: &[Model], fits: &[Fitted]) -> String {

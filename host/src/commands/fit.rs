@@ -12,7 +12,7 @@ use crate::engine::{FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::{OutputArguments, TableFormat};
+use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::plot::{self, picture};
 use crate::result;
 use crate::streams::Streams;
@@ -46,6 +46,7 @@ pub struct Arguments {
 /// The first thing that is wrong with options, files or the fit.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
+    let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), &arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if arguments.plot.is_some() && measurements.len() > 1 {
         return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
@@ -68,14 +69,14 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Json => result::json(&reports),
         TableFormat::Csv => result::csv(&reports, arguments.minima),
     };
-    if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
+    if let (Some(picture), [measurement], [report]) = (&picture, &measurements[..], &reports[..]) {
         let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
         picture::save(
-            path,
+            picture,
             &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
         )?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments, shortest};
+use crate::output::{self, Format, OutputArguments, deliver, shortest};
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -38,6 +38,7 @@ pub struct Arguments {
 /// An unknown parameter, too few or too many scans, a scan that can not be read or fitted, or an output that can not be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let shared = shared(&arguments.share)?;
+    let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
@@ -52,7 +53,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Text => text(&measurements, &fitted),
         Format::Json => json(&measurements, &fitted),
     };
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }
@@ -133,5 +134,5 @@ fn json(measurements: &[Measurement], fitted: &Fitted) -> String {
         "cost_separate": fitted.separate,
         "scans": scans,
     });
-    format!("{value:#}\n")
+    output::json(&value)
 }

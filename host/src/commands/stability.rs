@@ -10,7 +10,7 @@ use crate::analysis::stability::assess::assess;
 use crate::analysis::stability::built_in;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver, json};
 use crate::streams::Streams;
 use crate::terms::terms;
 
@@ -35,6 +35,7 @@ pub struct Arguments {
 /// # Errors
 /// The scan can not be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {
         None => {
             let cases = built_in();
@@ -55,10 +56,5 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
     };
-    arguments.output.deliver(&text, streams.output)
-}
-
-fn json(value: &impl serde::Serialize) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }

@@ -12,9 +12,9 @@ use crate::names;
 use crate::number::{digits, percent, short};
 use crate::output::shortest;
 use crate::parameters::MEANINGS;
-use crate::result::columns::{Json, Row, of_fits};
+use crate::plain::plain;
+use crate::result::columns::{Json, of_fits};
 use crate::result::words::{self, shown};
-use crate::terms::term_names;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -91,7 +91,6 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
                 @if number == 3 { (minima(section)) }
                 @if number == 4 { (angles(section)) }
             }
-            (numbers(section))
             (provenance(section, command))
         }
     }
@@ -250,44 +249,31 @@ fn angles(section: &Section) -> Markup {
     }
 }
 
-/// Every column of the tables of results but the time, which is another each time.
-fn numbers(section: &Section) -> Markup {
-    let row = Row::from(&section.report);
-    let columns = of_fits().into_iter().filter(|column| column.json != Json::Time);
-    let cells = columns.map(|column| (column.cell(&row), column));
-    html! {
-        table {
-            caption { "This fit as in the CSV and JSON of brdfit, with all digits." }
-            thead { tr { th.text { "column" } th { "value" } th.text { "unit" } th.text { "meaning" } } }
-            tbody {
-                @for (cell, column) in cells.filter(|(cell, _)| !cell.is_empty()) { tr {
-                    td.text { code { (column.name) } }
-                    td { (cell.text()) }
-                    td.text { (column.unit) }
-                    td.text { (column.about) }
-                } }
-            }
-        }
-    }
-}
-
-/// What it takes to make this again.
+/// What it takes to make this again, and what came out: every column of the tables of results but the time, which is another each time.
 fn provenance(section: &Section, command: &str) -> Markup {
     let (report, options) = (&section.report, &section.report.options);
     let precision = names::precision(options.precision);
+    let columns = of_fits().into_iter().filter(|column| column.json != Json::Time);
+    let cells = columns.map(|column| (column.cell(&report.into()), column));
+    let numbers = cells.filter(|(cell, _)| !cell.is_empty());
     html! {
         table.provenance {
-            caption { "Provenance. The command gives this page again, to the byte." }
+            caption { "Provenance and results by their names in CSV and JSON, with all digits. The command gives this page again, to the byte." }
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (report.file) ", " (section.source.bytes) " bytes" } }
+                tr { th.text { "input" } td.text { (plain(&report.file)) ", " (section.source.bytes) " bytes" } }
                 tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
-                tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } }
-                tr { th.text { "passes" } td.text { (report.outcome.evaluations.linearize) " with derivatives, " (report.outcome.evaluations.cost) " without" } }
+                @if report.choice.is_some() { tr { th.text { "choice" } td.text { "the fewest terms that the scan supports, by BIC" } } }
+            }
+            tbody {
+                @for (cell, column) in numbers { tr {
+                    th.text { code { (column.name) } }
+                    td.text { code { (cell.text()) } @if !matches!(column.unit, "" | "1") { " " (column.unit) } ", " (column.about) }
+                } }
             }
         }
     }

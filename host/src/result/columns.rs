@@ -10,6 +10,7 @@ use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
 use crate::engine::{FitOptions, Minimum, Outcome};
 use crate::names;
+use crate::output::shortest;
 use crate::parameters::MEANINGS;
 use crate::terms::term_names;
 
@@ -264,7 +265,7 @@ fn of_scan() -> Vec<Column> {
     let conserved = "reflectance of at most 1 at each angle of incidence";
     vec![
         text("theta_i_deg", "angles of incidence, degrees", Otherwise, |row| {
-            let angles = row.scan?.angles.iter().map(|angle| angle.degrees().to_string());
+            let angles = row.scan?.angles.iter().map(|angle| shortest(angle.degrees()));
             Some(angles.collect::<Vec<_>>().join("+"))
         }),
         number(

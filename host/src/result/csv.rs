@@ -2,15 +2,18 @@
 
 use super::columns::{Row, of_fits, of_minima};
 use crate::analysis::fit::FittedScan;
+use crate::output::write_row;
 
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(scans: &[FittedScan], minima: bool) -> String {
     let columns = if minima { of_minima() } else { of_fits() };
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory does not fail.
-    let _ = writer.write_record(columns.iter().map(|column| &column.name));
+    let names: Vec<&String> = columns.iter().map(|column| &column.name).collect();
+    let _ = write_row(&mut writer, &names);
     let mut write = |row: Row| {
-        let _ = writer.write_record(columns.iter().map(|column| column.cell(&row).text()));
+        let cells: Vec<String> = columns.iter().map(|column| column.cell(&row).text()).collect();
+        let _ = write_row(&mut writer, &cells);
     };
     for scan in scans {
         let row = Row::from(scan);

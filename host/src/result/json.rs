@@ -12,6 +12,7 @@ use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
 use crate::engine::Minimum;
 use crate::input::{LeftOut, ReadAs};
+use crate::output;
 use by_name::{ByName, by_name};
 use choice::{Selection, selection};
 use uncertainty::{AtAngle, Known, at_angle, known};
@@ -100,10 +101,8 @@ fn document(scan: &FittedScan) -> Document<'_> {
 /// One object for one scan, an array for several.
 pub fn json(scans: &[FittedScan]) -> String {
     let documents: Vec<_> = scans.iter().map(document).collect();
-    let written = match documents.as_slice() {
-        [one] => serde_json::to_string_pretty(one),
-        several => serde_json::to_string_pretty(several),
-    };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    written.unwrap_or_default() + "\n"
+    match documents.as_slice() {
+        [one] => output::json(one),
+        several => output::json(&several),
+    }
 }

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
+use crate::output::write_row;
 use crate::result::cell::{Cell, Kind};
 
 /// The form of the file of results.
@@ -83,9 +84,11 @@ pub fn write(
 
 fn csv(columns: &[(String, Kind)], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns.iter().map(|(name, _)| name))?;
+    let names: Vec<&String> = columns.iter().map(|(name, _)| name).collect();
+    write_row(&mut writer, &names)?;
     for row in rows {
-        writer.write_record(cells(row?)?.iter().map(Cell::text))?;
+        let texts: Vec<String> = cells(row?)?.iter().map(Cell::text).collect();
+        write_row(&mut writer, &texts)?;
     }
     writer.flush()
 }

@@ -1,6 +1,7 @@
 //! ASTM E1392 and E2387 text: `KEY value` lines up to `VARS`, then rows of comma-separated numbers, angles in radians.
 
-use super::columns::plain;
+use super::about::About;
+use super::head::plain;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::rows::number;
 use super::units::{Angles, Quantity};
@@ -58,6 +59,7 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
                     weight: None,
                 },
                 rows: Vec::new(),
+                about: About::default(),
             }
         })
         .collect();

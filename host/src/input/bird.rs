@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
+use super::about::About;
 use super::bytes::Lines;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::units::{Angles, Quantity};
@@ -106,6 +107,7 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
                 quantity: Quantity::Brdf,
                 places: Places::default(),
                 rows: vec![row],
+                about: About::default(),
             }),
         }
     }

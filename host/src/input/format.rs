@@ -18,7 +18,7 @@ pub fn scans(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>
     let format = options.input_format.unwrap_or_else(|| detect(text));
     let mut scans = match format {
         Format::Table | Format::Merl => table::read(text, options)?,
-        Format::Matrix => matrix::read(text)?,
+        Format::Matrix => matrix::read(text, options)?,
         Format::Astm => astm::read(text)?,
         Format::Bird => bird::read(text)?,
         Format::Zemax => zemax::read(text)?,

@@ -1,5 +1,6 @@
 //! The text of FRED: two header lines, then for each direction of incidence a line with its specular direction, and rows `theta_s phi_s bsdf`.
 
+use super::about::About;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::rows::{self, number};
 use super::units::{Angles, Quantity};
@@ -28,6 +29,7 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
             weight: None,
         },
         rows: Vec::new(),
+        about: About::default(),
     };
     let mut scale = 1.0;
     let mut specular = None;

@@ -1,5 +1,6 @@
 //! The text of LUMOS and ScatterWorks: rows `phi_i theta_i phi_o theta_o brdf` in degrees, where phi is the zenith angle and theta the azimuth.
 
+use super::about::About;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::rows::{self, number};
 use super::units::{Angles, Quantity};
@@ -29,6 +30,7 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
             weight: None,
         },
         rows: Vec::new(),
+        about: About::default(),
     };
     rows::for_each(text, |line, cells| {
         let number = |column| number(cells, column).map_err(|error| error.at_line(line));

@@ -2,6 +2,7 @@
 
 use libm::{atan2, sqrt};
 
+use super::about::About;
 use super::direction::sin_cos;
 use super::options::ReadOptions;
 use super::raw::{Places, RawScan, Row, Weight};
@@ -61,6 +62,7 @@ pub fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             quantity: Quantity::Brdf,
             places: Places::default(),
             rows: places.iter().filter_map(row).collect(),
+            about: About::default(),
         }
     };
     Ok(COLOURS.into_iter().enumerate().map(scan).collect())

@@ -34,8 +34,12 @@ impl Sum {
     /// Returns the standard deviation of ln f that a weight of 1 stands for, if all weights are of standard deviations.
     pub fn normalise(&self, samples: &mut [Sample<f64>]) -> Option<f64> {
         let root_mean_square = (self.squares / samples.len() as f64).sqrt();
-        for sample in samples {
-            sample.weight /= root_mean_square;
+        // Weights that were normalised keep their bits, so that a scan that the program wrote is the same when it is read.
+        let normalised = (root_mean_square - 1.0).abs() < 1e-12;
+        if !normalised || self.sigmas > 0 {
+            for sample in samples {
+                sample.weight /= root_mean_square;
+            }
         }
         (self.sigmas > 0 && self.others == 0).then(|| 1.0 / root_mean_square)
     }

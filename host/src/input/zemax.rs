@@ -1,5 +1,6 @@
 //! Tabular BSDF of Zemax ("BSDF Data Interchange"): angles from the specular ray, blocks of numbers for each rotation and angle of incidence.
 
+use super::about::About;
 use super::direction;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::rows::is_remark;
@@ -111,6 +112,7 @@ pub fn read(text: &str) -> Result<Vec<RawScan>, Error> {
                 quantity: Quantity::Brdf,
                 places: Places::default(),
                 rows: Vec::new(),
+                about: About::default(),
             };
             if rotations.len() > 1 {
                 scan.names.push(format!("rotation {rotation}"));

@@ -17,7 +17,7 @@ fn text(path: &Path) -> String {
 fn each_error_of_a_file_names_its_place() {
     const HEAD: &str = "# remark\ntheta_i_deg,theta_s_deg,brdf_per_sr\n45,10,0.1\n";
     let long = "1,2,0\n".repeat(100);
-    let cases: [(&str, Vec<u8>, &str, &str); 22] = [
+    let cases: [(&str, Vec<u8>, &str, &str); 21] = [
         ("empty", vec![], "", "the file is empty"),
         ("remarks", b"# a\n\n# b\n".into(), "", "no header line"),
         ("no_rows", b"theta_i,theta_s,brdf\n\n".into(), "", "no rows"),
@@ -25,7 +25,7 @@ fn each_error_of_a_file_names_its_place() {
             "no_header",
             b"45,-85,0.03\n45,-84,0.03\n".into(),
             ":1",
-            "among the columns 45, -85, 0.03",
+            "the columns have no names; say what they are, such as --columns theta_i=1,theta_s=2,brdf=3",
         ),
         (
             "no_brdf",
@@ -47,9 +47,9 @@ fn each_error_of_a_file_names_its_place() {
         ),
         (
             "comma",
-            b"theta_i;theta_s;brdf\n45;1;0,1\n".into(),
-            ":2:3",
-            "decimal point",
+            b"theta_i;theta_s;brdf\n45;1;0,1\n45;2;0.1\n".into(),
+            ":3:3",
+            "decimal comma",
         ),
         ("hole", format!("{HEAD}45,,0.1\n").into(), ":4:2", "'' is not a number"),
         ("nan", format!("{HEAD}45,10,NaN\n").into(), ":4:3", "--drop-invalid"),
@@ -57,12 +57,6 @@ fn each_error_of_a_file_names_its_place() {
         ("nan_angle", format!("{HEAD}nan,10,1\n").into(), ":4:1", "no angle"),
         ("horizon", format!("{HEAD}45,90,0.1\n").into(), ":4:2", "horizon"),
         ("below", format!("{HEAD}45,-91,0.1\n").into(), ":4:2", "horizon"),
-        (
-            "negative_i",
-            format!("{HEAD}-45,10,0.1\n").into(),
-            ":4:1",
-            "change the signs",
-        ),
         (
             "zero",
             format!("{HEAD}45,10,0\n").into(),
@@ -93,12 +87,12 @@ fn each_error_of_a_file_names_its_place() {
             "",
             "2 samples can not determine 6 parameters",
         ),
-        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":1", "not UTF-8"),
+        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":3", "not text"),
         (
             "latin1",
-            b"theta_i,theta_s,brdf\n# Stra\xdfe\n".into(),
-            ":2",
-            "not UTF-8",
+            b"theta_i,theta_s,brdf\n# Stra\xdfe\n45,\x01,1\n".into(),
+            ":3",
+            "not text",
         ),
     ];
     let folder = tempfile::tempdir().unwrap();
@@ -119,16 +113,16 @@ fn errors_of_options_are_one_line() {
     let (_folder, file) = scene();
     let cases: [(&[&str], &str); 13] = [
         (&["--bounds", "n=2:1"], "wrong way round"),
-        (&["--bounds", "n=1:NaN"], "can not be NaN"),
-        (&["--bounds", "n=0.5:2"], "n can not be 0.5"),
-        (&["--bounds", "m=0:1"], "m can not be 0"),
-        (&["--bounds", "kappa=-1:1"], "kappa can not be -1"),
+        (&["--bounds", "n=1:NaN"], "cannot be NaN"),
+        (&["--bounds", "n=0.5:2"], "n cannot be 0.5"),
+        (&["--bounds", "m=0:1"], "m cannot be 0"),
+        (&["--bounds", "kappa=-1:1"], "kappa cannot be -1"),
         (
             &["--bounds", "alpha=0:1"],
             "the parameters are rho_d, rho_s, rho_v, m, n, kappa",
         ),
         (&["--bounds", "n"], "NAME=LO:HI"),
-        (&["--fix", "rho_d=-1"], "rho_d can not be -1"),
+        (&["--fix", "rho_d=-1"], "rho_d cannot be -1"),
         (&["--fix", "n=1.5", "--bounds", "n=1:2"], "twice"),
         (
             &["--fix", "kappa=0", "--terms", "diffuse,surface"],
@@ -136,7 +130,7 @@ fn errors_of_options_are_one_line() {
         ),
         (&["--terms", "volume"], "--terms takes one of: "),
         (&["--terms", "gloss"], "no term 'gloss'"),
-        (&["--output", "missing/folder/out.json"], "can not be written"),
+        (&["--output", "missing/folder/out.json"], "cannot be written"),
     ];
     for (options, what) in cases {
         let message = fail(&[&["fit", &file], options].concat());

@@ -1,12 +1,10 @@
 //! Reads scans: from the bytes of a file to samples in radians and sr^-1, with their weights.
 //!
-//! A file goes through [`mod@format`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
+//! A file goes through the table in [`mod@formats`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
 //! [`check`] makes samples of these: units, masks, validity, weights.
 //! Degrees and file formats exist here and in `simulate` only.
 
 pub mod about;
-mod astm;
-mod bird;
 pub mod bytes;
 mod channel;
 pub mod check;
@@ -15,13 +13,10 @@ mod direction;
 mod doubt;
 mod facts;
 pub mod format;
-mod fred;
+mod formats;
 pub mod head;
 mod join;
 pub mod left_out;
-mod lumos;
-mod matrix;
-mod merl;
 pub mod options;
 pub mod part;
 mod polarisation;
@@ -37,7 +32,6 @@ pub mod unit;
 pub mod units;
 mod wavelength;
 pub mod weight;
-mod zemax;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -46,10 +40,12 @@ use brdfit_core::geometry::Sample;
 
 use crate::engine::FitError;
 use crate::error::Error;
+use crate::plain::{plain, some_of};
 pub use about::About;
+use about::Kind;
 pub use bytes::STDIN;
+use format::Format;
 pub use left_out::LeftOut;
-use options::Format;
 pub use options::{ReadAs, ReadOptions};
 use raw::RawScan;
 pub use units::azimuth;
@@ -80,11 +76,17 @@ pub struct Measurement {
 impl Measurement {
     /// The file and the name of the scan in it, for people.
     pub fn label(&self) -> String {
-        match &self.name {
-            Some(name) => format!("{} [{name}]", self.file),
-            None => self.file.clone(),
-        }
+        label(&self.file, self.name.as_deref())
     }
+}
+
+/// A file and the name of a scan in it, for people.
+pub fn label(file: &str, scan: Option<&str>) -> String {
+    let label = match scan {
+        Some(scan) => format!("{file} [{scan}]"),
+        None => file.to_string(),
+    };
+    plain(&label).into_owned()
 }
 
 /// Reads every scan of every file, in order; a file may hold several.
@@ -152,11 +154,11 @@ fn bytes_of(path: &Path, stdin: &mut dyn Read) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// As [`read`], and if there are several scans.
 pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Result<Measurement, Error> {
-    let mut scans = read_file(path, options, stdin)?;
+    let mut scans = read(&[path.to_path_buf()], options, stdin)?;
     if scans.len() > 1 {
         let names: Vec<&str> = scans.iter().filter_map(|scan| scan.name.as_deref()).collect();
         return Err(
-            Error::new(format!("there are {} scans: {}", scans.len(), names.join(", ")))
+            Error::new(format!("there are {} scans: {}", scans.len(), some_of(&names)))
                 .in_file(path.display().to_string())
                 .help("choose one with --column"),
         );
@@ -177,12 +179,14 @@ pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Meas
 
 /// The scans that are wanted of the bytes of a file, as they stand there, and its format.
 fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
-    let (format, scans) = format::scans(bytes, options)?;
-    options.refuse_for(format)?;
+    let (format, scans) = formats::scans(bytes, options)?;
+    if let Some(scan) = scans.first() {
+        options.refuse_for(scan.about.kind, format)?;
+    }
     let mut scans = raw::select(scans, &options.column)?;
     for scan in &mut scans {
         about::give_theta_i(file, scan, options)?;
-        if matches!(format, Format::Table | Format::Matrix) {
+        if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;
         }
     }

@@ -1,5 +1,7 @@
 //! The model that is exported, from a result or from parameters.
 
+use std::path::Path;
+
 use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
@@ -7,7 +9,8 @@ use serde_json::Value;
 
 use crate::engine::ln_f;
 use crate::error::Error;
-use crate::options;
+use crate::parameters::check;
+use crate::plain::plain;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,18 +26,14 @@ pub struct Model {
 }
 
 impl Model {
-    /// From a list such as `rho_d=0.1,rho_s=10,...`.
-    ///
-    /// # Errors
-    /// A parameter is missing, named twice, or out of range.
-    pub fn of_params(list: &str) -> Result<Model, Error> {
-        let params = options::all_parameters(list, "--params")?;
-        Ok(Model {
+    /// From parameters alone.
+    pub fn of_params(params: Params<f64>) -> Model {
+        Model {
             name: "material".into(),
             params,
             stderr: [None; 6],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
-        })
+        }
     }
 
     /// From a result of `brdfit fit --format json`, of which `index` (from 1) chooses one if there are several.
@@ -72,7 +71,7 @@ impl Model {
             values[place] = value.ok_or_else(|| none(&format!("there is no parameters.{name}")))?;
         }
         for (place, &value) in values.iter().enumerate() {
-            options::check(place, value)?;
+            check(place, value)?;
         }
         let text = |key: &str| result[key].as_str();
         let file = text("file").unwrap_or("material");
@@ -86,12 +85,67 @@ impl Model {
             name,
             params: Params::from_array(values),
             stderr,
-            origin: origin.replace(['\n', '\r'], " "),
+            origin: plain(&origin).into_owned(),
         })
     }
 
     /// f in sr^-1; angles in radians, 0 beyond the horizon.
     pub fn f(&self, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         Geometry::new(theta_i, theta_s, delta_phi).map_or(0.0, |geometry| Real::exp(ln_f(&self.params, &geometry)))
+    }
+}
+
+/// Words that mean something else to Python, C, C++ or Rust, or are models of Mitsuba's own.
+const RESERVED: &str = "abstract alignas alignof and as asm assert async auto await become bitand bitor blendbsdf bool box break bumpmap \
+    case catch char class compl concept conductor const consteval constexpr constinit continue crate decltype def default del delete \
+    dielectric diffuse do double dr dyn elif else enum except explicit export extern false final finally float fn for friend from \
+    gen global goto hair hide if impl import in inline int is lambda let loop long macro mask match measured mi mod move mut mutable \
+    namespace new noexcept none nonlocal normalmap not null nullptr operator or override pass plastic pplastic principled \
+    principledthin private protected pub raise ref register requires restrict retarder return roughconductor roughdielectric \
+    roughplastic self short signed sizeof static struct super switch template thindielectric this throw trait true try twosided \
+    type typedef typeid typename typeof union unsafe unsigned unsized use using virtual void volatile where while with xor yield";
+
+/// The model's name as a word of a program: letters, digits and underscores, and no word of a language.
+pub(super) fn word(name: &str) -> String {
+    let stem = Path::new(name)
+        .file_stem()
+        .map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    let word: String = stem
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let reserved = RESERVED.split_whitespace().any(|reserved| reserved == word);
+    if word.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved {
+        word
+    } else {
+        format!("brdf_{word}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers() {
+        for (name, expected) in [
+            ("scans/Black Paint-2.csv", "black_paint_2"),
+            ("class", "brdf_class"),
+            ("mi.csv", "brdf_mi"),
+            ("diffuse", "brdf_diffuse"),
+            ("a\0b\u{202e}c", "a_b_c"),
+            ("2024", "brdf_2024"),
+            ("_x", "brdf__x"),
+            ("", "brdf_"),
+            ("\"\nimport os\n", "brdf___import_os_"),
+        ] {
+            assert_eq!(word(name), expected, "{name:?}");
+        }
     }
 }

@@ -7,10 +7,13 @@ use super::options::ReadOptions;
 use super::raw::RawScan;
 use super::units::Angles;
 use crate::error::Error;
+use crate::plain::some_of;
 
 /// What a reader understood, beside the numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About {
+    /// What kind of file it is, as far as its numbers need checks.
+    pub kind: Kind,
     /// The columns that are used, in order.
     pub columns: Vec<Used>,
     /// The columns that are not, by name.
@@ -27,9 +30,17 @@ pub struct About {
     pub notes: Vec<String>,
 }
 
+impl About {
+    /// The columns that are not used, for people; of very many only the first.
+    pub fn unused(&self) -> String {
+        some_of(&self.unused)
+    }
+}
+
 impl Default for About {
     fn default() -> Self {
         About {
+            kind: Kind::Own,
             columns: Vec::new(),
             unused: Vec::new(),
             theta_i: ThetaI::Column,
@@ -39,6 +50,17 @@ impl Default for About {
             notes: Vec::new(),
         }
     }
+}
+
+/// What kind of file it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A table of columns, whose units and signs are anybody's.
+    Table,
+    /// A matrix, the same.
+    Matrix,
+    /// A format that fixes units and signs.
+    Own,
 }
 
 /// A column that is used.

@@ -4,8 +4,10 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::Measurement;
+use super::about::Kind;
+use super::format::Format;
 use super::left_out::{Counts, Reason};
-use super::options::{Format, ReadAs, ReadOptions, Weights};
+use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
 use super::side;
 use super::units::{Angles, Forward, Quantity};
@@ -56,7 +58,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
             Error::new(format!("none of the {rows} rows is a valid sample")).help("check the columns, units and masks")
         );
     }
-    if options.forward.is_none() && matches!(format, Format::Table | Format::Matrix) {
+    if options.forward.is_none() && scan.about.kind != Kind::Own {
         side::refuse(&samples)?;
     }
     let sigma_ln = weights.normalise(&mut samples).or(scan.about.sigma_ln);

@@ -106,7 +106,7 @@ pub fn plain(name: &str) -> String {
             'ₛ' => plain.push('s'),
             'ₒ' => plain.push('o'),
             '₀' => plain.push('0'),
-                        // A point counts within a number alone.
+            // A point counts within a number alone.
             '.' if letters.peek().is_some_and(char::is_ascii_digit) => plain.push(c),
             c if c.is_alphanumeric() => plain.push(c),
             _ => {}

@@ -1,6 +1,7 @@
 //! Several files as one scan, and what options say of each of them.
 
-use super::options::{Format, ReadOptions};
+use super::format::Format;
+use super::options::ReadOptions;
 use super::raw::RawScan;
 use crate::error::Error;
 
@@ -34,7 +35,7 @@ pub fn options_of_each(options: &ReadOptions, files: usize) -> Result<Vec<ReadOp
 pub fn one(files: Vec<(String, (Format, Vec<RawScan>))>) -> Result<(String, (Format, Vec<RawScan>)), Error> {
     let mut files = files.into_iter();
     let Some((mut label, (format, mut scans))) = files.next() else {
-        return Ok((String::new(), (Format::Table, Vec::new())));
+        return Err(Error::new("there are no files"));
     };
     for (file, (other, others)) in files {
         let fail = |what: &str| {

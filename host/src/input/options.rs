@@ -5,47 +5,11 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::about::Kind;
+use super::format::Format;
 use super::part::{self, Part};
 use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, WavelengthUnit};
 use crate::error::Error;
-
-/// A format of files with scans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// Named columns: CSV, TSV, semicolons or spaces
-    Table,
-    /// Angles of incidence in the first row, scattering angles in the first column
-    Matrix,
-    /// ASTM E1392 or E2387 text
-    Astm,
-    /// EURAMET BiRD universal BRDF JSON
-    Bird,
-    /// Zemax tabular BSDF
-    Zemax,
-    /// FRED text
-    Fred,
-    /// LUMOS or ScatterWorks text
-    Lumos,
-    /// MERL binary
-    Merl,
-}
-
-impl Format {
-    /// What people call it.
-    pub fn title(self) -> &'static str {
-        match self {
-            Format::Table => "table with named columns",
-            Format::Matrix => "matrix",
-            Format::Astm => "ASTM E1392",
-            Format::Bird => "BiRD JSON",
-            Format::Zemax => "Zemax tabular BSDF",
-            Format::Fred => "FRED text",
-            Format::Lumos => "LUMOS text",
-            Format::Merl => "MERL binary",
-        }
-    }
-}
 
 /// How files are read; all but `input_format` hold for each scan.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -135,25 +99,45 @@ pub struct ReadOptions {
 const TABLES: &str = "Tables";
 
 impl ReadOptions {
+    /// Refuses options that are of several files together.
+    ///
+    /// # Errors
+    /// One of them is given, and `command` reads each file alone.
+    pub fn refuse_together(&self, command: &str) -> Result<(), Error> {
+        let together = self.one_scan || self.theta_i.len() > 1;
+        if !together {
+            return Ok(());
+        }
+        let option = if self.one_scan {
+            "--one-scan"
+        } else {
+            "--theta-i with several angles"
+        };
+        Err(Error::new(format!(
+            "{option} is for several files together, and {command} reads each alone"
+        ))
+        .help("write them as one file with brdfit inspect --one-scan --output scan.csv"))
+    }
+
     /// Refuses options that only a table has a use for.
     ///
     /// # Errors
-    /// One of them is given, and the file is of another format.
-    pub fn refuse_for(&self, format: Format) -> Result<(), Error> {
+    /// One of them is given, and the file is of another format, which is named in the message.
+    pub fn refuse_for(&self, kind: Kind, format: Format) -> Result<(), Error> {
         let given = [
             ("--columns", !self.columns.is_empty()),
             ("--split", !self.split.is_empty()),
             ("--ignore", !self.ignore.is_empty()),
             ("--repeats", self.repeats),
-            ("--theta-i", !self.theta_i.is_empty() && format != Format::Matrix),
+            ("--theta-i", !self.theta_i.is_empty() && kind != Kind::Matrix),
             ("--polarisation mean", self.polarisation == Polarisation::Mean),
             ("--wavelength-unit", self.wavelength_unit.is_some()),
             ("--coverage", self.coverage.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
-            Some((option, _)) if format != Format::Table => Err(Error::new(format!(
+            Some((option, _)) if kind != Kind::Table => Err(Error::new(format!(
                 "{option} is for tables with columns, and this is {}",
-                format.title()
+                format.title
             ))
             .help(format!("leave {option} out, or call brdfit for this file alone"))),
             _ => Ok(()),
@@ -200,7 +184,7 @@ impl fmt::Display for ReadAs {
             },
             if self.weighted { ", weighted" } else { "" },
         );
-        let (format, quantity) = (self.format.title(), self.quantity.title());
+        let (format, quantity) = (self.format.title, self.quantity.title());
         write!(
             f,
             "{format}: {quantity} over {angles}, specular peak at theta_s = {sign}theta_i{weights}"

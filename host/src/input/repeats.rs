@@ -25,9 +25,11 @@ pub fn refuse(scan: &RawScan, sheet: &Sheet, columns: &Columns, tells_apart: &[u
     let mut seen: HashMap<Direction, &Row> = HashMap::with_capacity(scan.rows.len());
     let mut first = None;
     let mut count = 0;
-    for row in &scan.rows {
+    // Rows that are no samples are another fault, which is said of them later.
+    let is_sample = |row: &&Row| row.value.is_finite() && (row.value > 0.0 || scan.quantity.is_logarithm().is_some());
+    for row in scan.rows.iter().filter(is_sample) {
         let known = *seen.entry(direction(row)).or_insert(row);
-        if known.value != row.value && !(known.value.is_nan() && row.value.is_nan()) {
+        if known.value != row.value {
             count += 1;
             first.get_or_insert((known, row));
         }

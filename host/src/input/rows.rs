@@ -170,10 +170,10 @@ pub fn number_in(cells: &[&str], column: usize, decimal: &mut Decimal) -> Result
 
 /// A number as people and programs write it.
 pub fn parse(cell: &str, decimal: Decimal) -> Option<f64> {
-    if decimal != Decimal::Comma {
-        if let Ok(number) = cell.parse() {
-            return Some(number);
-        }
+    if decimal != Decimal::Comma
+        && let Ok(number) = cell.parse()
+    {
+        return Some(number);
     }
     let point = match decimal {
         Decimal::Point => !cell.contains(','),

@@ -92,50 +92,38 @@ impl<'a> Sheet<'a> {
     ) -> Sheet<'a> {
         let mut heads: Vec<Head> = cells.iter().map(|cell| Head::new(cell)).collect();
         let mut delimiter = delimiter;
+        // Lines below, with their places in the whole text.
         let mut below = rows::lines(&text[start..])
             .skip(1)
-            .filter(|(_, _, line)| !rows::is_remark(line));
-        let next_of_heads = rows::lines(&text[start..]).nth(1);
-        let (mut rows_start, mut first_line) = next_of_heads
-            .map_or((text.len(), line.number + 1), |(number, begin, _)| {
-                (start + begin, line.number + number - 1)
-            });
+            .map(|(number, begin, below)| (line.number + number - 1, start + begin, below))
+            .filter(|(_, _, below)| !rows::is_remark(below));
         let mut next = below.next();
-        if let Some((number, begin, units)) = next {
+        if let Some((_, _, units)) = next {
             let cells = rows::split(units, delimiter);
-            let known: Vec<bool> = cells
-                .iter()
-                .map(|cell| cell.is_empty() || Unit::parse(cell).is_some())
-                .collect();
-            let words = cells
-                .iter()
-                .any(|cell| !cell.is_empty() && rows::parse(cell, Decimal::Unknown).is_none());
-            if cells.len() == heads.len() && words && known.iter().all(|known| *known) {
+            let known = cells.iter().all(|cell| cell.is_empty() || Unit::parse(cell).is_some());
+            let words = cells.iter().any(|cell| !cell.is_empty() && !is_number(cell));
+            if cells.len() == heads.len() && words && known {
                 heads = heads
                     .into_iter()
                     .zip(&cells)
                     .map(|(head, unit)| head.with_unit(unit))
                     .collect();
                 next = below.next();
-                (rows_start, first_line) = match next {
-                    Some((number, begin, _)) => (start + begin, line.number + number - 1),
-                    None => (text.len(), line.number + number),
-                };
-                let _ = begin;
             }
         }
         // Names may stand between commas, and numbers between spaces.
-        if let Some((_, _, row)) = next {
-            if rows::split(row, delimiter).len() != heads.len() {
-                let fits = delimiter_of_row(row).filter(|&other| rows::split(row, other).len() == heads.len());
-                delimiter = fits.unwrap_or(delimiter);
-            }
+        if let Some((_, _, row)) = next
+            && rows::split(row, delimiter).len() != heads.len()
+        {
+            let fits = delimiter_of_row(row).filter(|&other| rows::split(row, other).len() == heads.len());
+            delimiter = fits.unwrap_or(delimiter);
         }
+        let (first_line, begin, _) = next.unwrap_or((line.number + 1, text.len(), ""));
         Sheet {
             heads,
             line: line.number,
             facts: Facts::of(above.iter().map(|line| (line.number, line.text))),
-            rows: &text[rows_start..],
+            rows: &text[begin..],
             first_line,
             delimiter,
         }
@@ -152,10 +140,11 @@ impl<'a> Sheet<'a> {
     ) -> Result<Sheet<'a>, Error> {
         let width = rows::split(line.text, delimiter).len();
         let facts = Facts::of(above.iter().map(|line| (line.number, line.text)));
-        let named = above.iter().enumerate().rev().find_map(|(place, remark)| {
-            let last = place + 1 == above.len();
-            Some((place, names_in(remark.text, width, delimiter, last)?))
-        });
+        let known = above.iter().enumerate().rev();
+        let known = known.filter_map(|(place, remark)| Some((place, names_in(remark.text, width, delimiter)?)));
+        let last = above.len().checked_sub(1);
+        let foreign = last.and_then(|place| Some((place, foreign_names(above[place].text, width, delimiter)?)));
+        let named = known.chain(foreign).next();
         let (at, heads) = match named {
             Some((place, names)) => {
                 let mut heads: Vec<Head> = names.iter().map(|name| Head::new(name)).collect();
@@ -286,20 +275,22 @@ fn parts(remark: &str, delimiter: Option<u8>) -> Vec<Vec<&str>> {
         .collect()
 }
 
-/// The names in a remark, if there are as many as columns; of the last line before the rows they need not be known.
-fn names_in<'a>(remark: &'a str, width: usize, delimiter: Option<u8>, last: bool) -> Option<Vec<&'a str>> {
-    let all = parts(remark, delimiter);
-    let fitting = || all.iter().filter(|names| names.len() == width);
-    let known = fitting().find(|names| is_head(names));
-    let unknown = || {
-        let plain = last && !remark.contains([':', '=']) && width > 1;
-        fitting().find(|names| plain && names.iter().all(|name| !name.is_empty() && !is_number(name)))
-    };
-    known.or_else(unknown).cloned()
+/// The names in a remark, if there are as many as columns and they are known.
+fn names_in(remark: &str, width: usize, delimiter: Option<u8>) -> Option<Vec<&str>> {
+    let known = |names: &Vec<&str>| names.len() == width && is_head(names);
+    parts(remark, delimiter).into_iter().find(known)
+}
+
+/// The words in the line right above the rows, if there are as many as columns: names that somebody else gave.
+fn foreign_names(remark: &str, width: usize, delimiter: Option<u8>) -> Option<Vec<&str>> {
+    let is_name = |name: &&str| !name.is_empty() && !is_number(name);
+    let names = |names: &Vec<&str>| names.len() == width && width > 1 && names.iter().all(is_name);
+    let is_pair = remark.contains([':', '=']);
+    parts(remark, delimiter).into_iter().find(names).filter(|_| !is_pair)
 }
 
 /// The units in a remark, if there are as many as columns.
-fn units_in<'a>(remark: &'a str, width: usize, delimiter: Option<u8>) -> Option<Vec<&'a str>> {
+fn units_in(remark: &str, width: usize, delimiter: Option<u8>) -> Option<Vec<&str>> {
     let units = |cells: &Vec<&str>| cells.len() == width && cells.iter().all(|cell| Unit::parse(cell).is_some());
     parts(remark, delimiter).into_iter().find(units)
 }

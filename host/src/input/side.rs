@@ -4,8 +4,8 @@ use brdfit_core::geometry::Sample;
 
 use crate::error::Error;
 
-/// Closer to the normal than this the two sides cannot be told apart, degrees.
-const LEAST: f64 = 10.0;
+/// Closer to the normal the two sides cannot be told apart, and closer to grazing rough surfaces do scatter back, degrees.
+const RANGE: std::ops::RangeInclusive<f64> = 10.0..=75.0;
 /// The peak may be this far from where a mirror has it, degrees.
 const WINDOW: f64 = 8.0;
 /// How many times brighter the other side must be.
@@ -20,7 +20,7 @@ pub fn other_side(samples: &[Sample<f64>]) -> Option<f64> {
     angles.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
     let mut backs: Vec<f64> = Vec::new();
     let mut least = f64::INFINITY;
-    for theta_i in angles.into_iter().filter(|angle| angle.to_degrees() >= LEAST) {
+    for theta_i in angles.into_iter().filter(|angle| RANGE.contains(&angle.to_degrees())) {
         let near = |centre: f64| {
             let group = samples.iter().filter(|sample| (sample.theta_i - theta_i).abs() < 1e-4);
             let inside = group.filter(|sample| signed(sample).is_some_and(|angle| (angle - centre).abs() <= WINDOW));

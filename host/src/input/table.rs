@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use super::about::{About, ThetaI, Used};
+use super::about::{About, Kind, ThetaI, Used};
 use super::columns::{self, Azimuth, Columns, Value};
 use super::facts::Facts;
+use super::format::{self, Format};
 use super::options::ReadOptions;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::repeats;
@@ -16,6 +17,14 @@ use super::unit::Unit;
 use super::units::{Polarisation, WavelengthUnit};
 use super::{channel, polarisation, wavelength};
 use crate::error::{Error, shown};
+
+/// This format, which is what no other is.
+pub const FORMAT: Format = Format {
+    name: "table",
+    title: "table with named columns",
+    about: "Columns: CSV, TSV, semicolons or spaces",
+    reader: format::Reader::Text { is: |_| true, read },
+};
 
 /// The scans in a table.
 ///
@@ -368,6 +377,7 @@ impl<'a> Reader<'a> {
             name => name.to_string(),
         };
         About {
+            kind: Kind::Table,
             columns: used.collect(),
             unused: columns.unused.iter().map(|&(column, _)| title(column)).collect(),
             theta_i: match columns.theta_i {

@@ -172,10 +172,11 @@ impl Unit {
         }
         // A wavelength as `0.55um` or `5500Å`.
         let digits = name.trim_start_matches(|c: char| c.is_ascii_digit() || c == '.');
-        if digits.len() < name.len() && !digits.is_empty() {
-            if let Some(unit @ (Unit::Length(_) | Unit::PerCm)) = Unit::parse(digits) {
-                return (&name[..name.len() - digits.len()], Some(unit));
-            }
+        if digits.len() < name.len()
+            && !digits.is_empty()
+            && let Some(unit @ (Unit::Length(_) | Unit::PerCm)) = Unit::parse(digits)
+        {
+            return (&name[..name.len() - digits.len()], Some(unit));
         }
         (name, None)
     }

@@ -6,7 +6,9 @@ use brdfit_core::brdf::{NAMES, Params};
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::report::json::JsonParameters;
+use crate::output::shortest;
+use crate::plain::of_cell;
+use crate::result::json::JsonParameters;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,8 +77,8 @@ fn csv(text: &str) -> Option<Vec<Fitted>> {
             None => Err(row.get(place("error")?)?.to_string()),
         };
         all.push(Fitted {
-            file: row.get(file)?.into(),
-            scan: Some(row.get(scan)?.to_string()).filter(|scan| !scan.is_empty()),
+            file: of_cell(row.get(file)?).into(),
+            scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             params,
         });
     }
@@ -91,11 +93,13 @@ pub fn agree(label: &str, found: &Params<f64>, stored: &Params<f64>) -> Result<(
     let pairs = found.to_array().into_iter().zip(stored.to_array());
     for ((found, stored), name) in pairs.zip(NAMES) {
         if found != stored {
-            return Err(
-                Error::new(format!("{name} is {found} now, and {stored} in the results"))
-                    .in_file(label)
-                    .help("give report the options of the fit, the files as they were, and the same version of brdfit"),
-            );
+            return Err(Error::new(format!(
+                "{name} is {} now, and {} in the results",
+                shortest(found),
+                shortest(stored)
+            ))
+            .in_file(label)
+            .help("give report the options of the fit, the files as they were, and the same version of brdfit"));
         }
     }
     Ok(())

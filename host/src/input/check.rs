@@ -6,7 +6,7 @@ use brdfit_core::real::Real;
 use super::Measurement;
 use super::about::Kind;
 use super::format::Format;
-use super::left_out::{Counts, Reason};
+use super::left_out::Reason;
 use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
 use super::side;
@@ -29,13 +29,13 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let divisor = scan.about.divisor;
     let mut masked = Vec::new();
     let (mut samples, mut lines) = (Vec::new(), Vec::new());
-    let (mut counts, mut faults) = (Counts::default(), Faults::default());
-    let mut weights = weight::Sum::default();
+    let (mut counts, mut faults) = (scan.left_out, Faults::default());
+    let mut weights = weight::Count::default();
     for row in &scan.rows {
         let row = &turned_round(row, read_as.angles);
         match sample(row, &scan.places, &read_as, divisor, options) {
             Seen::Valid(sample, kind) => {
-                weights.add(sample.weight, kind);
+                weights.add(kind);
                 samples.push(sample);
                 lines.push(row.line);
             }
@@ -168,6 +168,9 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
     sample.weight = here.fold(weight, |weight, (_, factor)| weight * factor);
     if sample.weight == 0.0 {
         return Seen::Masked(Reason::NoWeight, Some(sample));
+    }
+    if !sample.weight.is_finite() {
+        return invalid(places.weight, "the weight is too large to compute with".into());
     }
     Seen::Valid(sample, source)
 }

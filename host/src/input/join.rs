@@ -59,6 +59,7 @@ pub fn one(files: Vec<(String, (Format, Vec<RawScan>))>) -> Result<(String, (For
                 return fail("the numbers are in other units");
             }
             scan.rows.extend(more.rows);
+            scan.left_out.merge(more.left_out);
             for note in more.about.notes {
                 if !scan.about.notes.contains(&note) {
                     scan.about.notes.push(note);

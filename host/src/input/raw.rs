@@ -2,6 +2,7 @@
 
 use super::about::About;
 use super::head::plain;
+use super::left_out::Counts;
 use super::units::{Angles, Quantity};
 use super::wavelength;
 use crate::error::{Error, shown};
@@ -21,6 +22,23 @@ pub struct RawScan {
     pub rows: Vec<Row>,
     /// What the reader understood.
     pub about: About,
+    /// What the reader left out of it.
+    pub left_out: Counts,
+}
+
+impl RawScan {
+    /// A scan without rows, whose values are a BRDF; `names` tells it from others of the file.
+    pub fn new(names: Vec<String>, angles: Angles) -> RawScan {
+        RawScan {
+            names,
+            angles,
+            quantity: Quantity::Brdf,
+            places: Places::default(),
+            rows: Vec::new(),
+            about: About::default(),
+            left_out: Counts::default(),
+        }
+    }
 }
 
 /// Columns of a table, counted from 1; none where a file is no table.

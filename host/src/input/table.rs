@@ -300,8 +300,6 @@ impl<'a> Reader<'a> {
         let names = value.name.iter().chain(wavelength).chain(polarisation);
         Scan {
             raw: RawScan {
-                names: names.cloned().collect(),
-                angles: columns.angles,
                 quantity: value.quantity,
                 places: Places {
                     theta_i: columns.theta_i.map(place),
@@ -312,8 +310,8 @@ impl<'a> Reader<'a> {
                     value: Some(place(value.column)),
                     weight: value.weight.map(|(column, _)| place(column)),
                 },
-                rows: Vec::new(),
                 about: self.about(value),
+                ..RawScan::new(names.cloned().collect(), columns.angles)
             },
             splits: splits.to_vec(),
             polarisation: polarisation.clone().or(of_channel),

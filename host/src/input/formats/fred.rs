@@ -1,7 +1,6 @@
 //! The text of FRED: two header lines, then for each direction of incidence a line with its specular direction, and rows `theta_s phi_s bsdf`.
 
 use crate::error::{Error, shown};
-use crate::input::about::About;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
@@ -28,9 +27,6 @@ fn is(text: &str) -> bool {
 /// Angles are not in degrees, a row has other than two or three numbers, or no specular direction stands before it.
 fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
         places: Places {
             theta_i: Some(1),
             theta_s: Some(1),
@@ -38,8 +34,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             value: Some(3),
             weight: None,
         },
-        rows: Vec::new(),
-        about: About::default(),
+        ..RawScan::new(Vec::new(), Angles::Deg)
     };
     let mut scale = 1.0;
     let mut specular = None;

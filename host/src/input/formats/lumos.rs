@@ -1,12 +1,11 @@
 //! The text of LUMOS and ScatterWorks: rows `phi_i theta_i phi_o theta_o brdf` in degrees, where phi is the zenith angle and theta the azimuth.
 
 use crate::error::Error;
-use crate::input::about::About;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::{self, number};
-use crate::input::units::{Angles, Quantity};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -29,9 +28,6 @@ fn is(text: &str) -> bool {
 /// A row has other than five numbers, or there is none.
 fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
         places: Places {
             theta_i: Some(1),
             theta_s: Some(3),
@@ -39,8 +35,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             value: Some(5),
             weight: None,
         },
-        rows: Vec::new(),
-        about: About::default(),
+        ..RawScan::new(Vec::new(), Angles::Deg)
     };
     rows::for_each(text, |line, cells| {
         let number = |column| number(cells, column).map_err(|error| error.at_line(line));

@@ -1,12 +1,12 @@
 //! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
 
 use crate::error::Error;
-use crate::input::about::{About, Kind, ThetaI};
+use crate::input::about::{Kind, ThetaI};
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::raw::{RawScan, Row, Weight};
 use crate::input::rows::{self, number};
-use crate::input::units::{Angles, Quantity};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -75,18 +75,9 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new("there are no rows below the angles").help("give one row a scattering angle"));
     }
     let axes = Axes::of(&head, &body, options)?;
-    let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
-        places: Places::default(),
-        rows: Vec::new(),
-        about: About {
-            kind: Kind::Matrix,
-            angles_named: false,
-            ..About::default()
-        },
-    };
+    let mut scan = RawScan::new(Vec::new(), Angles::Deg);
+    scan.about.kind = Kind::Matrix;
+    scan.about.angles_named = false;
     if let Axes::Azimuths { .. } = axes {
         scan.about.theta_i = ThetaI::Missing {
             remark: None,

@@ -9,7 +9,7 @@ use super::choose::{self, Choice};
 use super::derived::{self, Derived};
 use crate::engine::{self, FitOptions, Outcome};
 use crate::error::Error;
-use crate::input::{self, LeftOut, Measurement, ReadAs, left_out};
+use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
@@ -20,6 +20,8 @@ pub struct FittedScan {
     pub scan: Option<String>,
     /// What the numbers of the file were taken for.
     pub read_as: ReadAs,
+    /// What the reader understood of the file.
+    pub about: About,
     /// What was left out of the scan.
     pub left_out: Vec<LeftOut>,
     /// The part of each angle of incidence, in order of that angle.
@@ -69,6 +71,7 @@ impl FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
             read_as: measurement.read_as,
+            about: measurement.about.clone(),
             left_out,
             angles: by_angle(&samples, &outcome.params),
             derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),

@@ -75,6 +75,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
+    arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
     let target = match arguments.shard {
         Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),

@@ -22,6 +22,12 @@ struct Document<'a> {
     #[serde(flatten)]
     head: Columns<'a>,
     input: ReadAs,
+    /// Columns of the table that are not used.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    not_used: &'a [String],
+    /// What was done to the numbers of the file.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    notes: &'a [String],
     left_out: &'a [LeftOut],
     #[serde(flatten)]
     found: Columns<'a>,
@@ -78,6 +84,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
         hits: minimum.hits,
         first_start: minimum.first_start,
     };
+<<<<<<< HEAD
     Document {
         head: Columns(scan, Json::Head),
         input: scan.read_as,
@@ -89,6 +96,30 @@ fn document(scan: &FittedScan) -> Document<'_> {
         uncertainty: known(&outcome.params, &outcome.uncertainty, &scan.derived),
         derived: scan.derived.iter().map(at_angle).collect(),
         end: Columns(scan, Json::End),
+=======
+    JsonReport {
+        file: &report.file,
+        scan: report.scan.as_deref(),
+        input: report.read_as,
+        not_used: &report.about.unused,
+        notes: &report.about.notes,
+        left_out: &report.left_out,
+        samples: outcome.samples,
+        method: names::method(report.options.method),
+        seed: report.options.seed,
+        starts: report.options.starts(),
+        terms: term_names(report.options.terms),
+        mse2: outcome.mse2,
+        rms_ln: outcome.rms_ln,
+        chi2: report.chi2,
+        robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
+        parameters: json_parameters(&outcome.params),
+        at_bound: &outcome.at_bound,
+        selection: report.choice.as_ref().map(selection),
+        uncertainty: known(&outcome.params, &outcome.uncertainty, &report.derived),
+        derived: report.derived.iter().map(at_angle).collect(),
+        stop: names::stop(outcome.stop),
+>>>>>>> main
         minima: outcome.minima.iter().map(minimum).collect(),
         evaluations: Evaluations {
             cost: outcome.evaluations.cost,

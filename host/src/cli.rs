@@ -6,7 +6,7 @@ use std::io::Write;
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    batch, compare, completions, converge, export, fit, joint, man, merge, paper, profile, report, simulate, stability,
+    batch, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report, simulate, stability,
 };
 use crate::error::{EXIT_CODE, Error};
 use crate::plain::{self, Lines};
@@ -36,6 +36,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Fit(fit::Arguments),
+    Inspect(inspect::Arguments),
     Report(report::Arguments),
     Batch(batch::Arguments),
     Merge(merge::Arguments),
@@ -119,6 +120,7 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
         Command::Fit(arguments) => return fit::run(arguments, streams),
+        Command::Inspect(arguments) => inspect::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
         Command::Report(arguments) => report::run(arguments, given, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),

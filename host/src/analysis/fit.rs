@@ -7,6 +7,7 @@ use brdfit_core::geometry::{Geometry, Sample};
 
 use super::choose::{self, Choice};
 use super::derived::{self, Derived};
+use super::hints::{self, Hint};
 use crate::engine::{self, FitOptions, Outcome};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
@@ -36,6 +37,8 @@ pub struct FittedScan {
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
     pub derived: Vec<Derived>,
+    /// What a person would say of it.
+    pub hints: Vec<Hint>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
     pub elapsed: Option<Duration>,
 }
@@ -67,6 +70,7 @@ impl FittedScan {
     /// Puts together what the engine found.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
+        let derived = derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
@@ -74,7 +78,8 @@ impl FittedScan {
             about: measurement.about.clone(),
             left_out,
             angles: by_angle(&samples, &outcome.params),
-            derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
+            hints: hints::of_fit(measurement, options, &outcome, &derived),
+            derived,
             options: *options,
             chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,

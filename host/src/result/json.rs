@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
+use crate::analysis::hints::Hint;
 use crate::engine::Minimum;
 use crate::input::{LeftOut, ReadAs};
 use crate::output;

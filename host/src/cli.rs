@@ -6,7 +6,8 @@ use std::io::Write;
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    batch, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report, simulate, stability,
+    batch, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report, simulate,
+    stability,
 };
 use crate::error::{EXIT_CODE, Error};
 use crate::plain::{self, Lines};

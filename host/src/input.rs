@@ -116,7 +116,9 @@ pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> R
     // One file an angle of incidence is most often one scan.
     if several && measurements.iter().all(|measurement| measurement.about.one_angle) {
         let note = "this is one angle of incidence; --one-scan takes all files as one scan".to_string();
-        measurements.iter_mut().for_each(|measurement| measurement.about.notes.push(note.clone()));
+        measurements
+            .iter_mut()
+            .for_each(|measurement| measurement.about.notes.push(note.clone()));
     }
     Ok(measurements)
 }

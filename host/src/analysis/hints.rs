@@ -52,7 +52,9 @@ fn before_fit(measurement: &Measurement) -> Vec<Hint> {
         };
         Hint::new(
             "side",
-            format!("opposite to the specular direction the values are {times:.2} times those around it: --forward {other}?"),
+            format!(
+                "opposite to the specular direction the values are {times:.2} times those around it: --forward {other}?"
+            ),
         )
     }));
     hints.extend(shadow::width(&measurement.samples).map(|degrees| {
@@ -101,12 +103,21 @@ pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome
 /// Are the values a reflectance factor, or not calibrated? rho_d is on 1 and more light comes back than went in.
 fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Option<Hint> {
     let brightest = derived.iter().map(|at| at.reflectance.value).fold(0.0, f64::max);
-    let on_bound = outcome.at_bound.contains(&"rho_d") && outcome.params.rho_d >= options.upper.rho_d && options.upper.rho_d >= 1.0;
+    let on_bound = outcome.at_bound.contains(&"rho_d")
+        && outcome.params.rho_d >= options.upper.rho_d
+        && options.upper.rho_d >= 1.0;
     if !on_bound || !(brightest > 1.0) {
         return None;
     }
-    let begin = format!("rho_d is on its bound of {} and the reflectance is {brightest:.2}", options.upper.rho_d);
-    let least = measurement.samples.iter().map(|sample| sample.brdf).fold(f64::INFINITY, f64::min);
+    let begin = format!(
+        "rho_d is on its bound of {} and the reflectance is {brightest:.2}",
+        options.upper.rho_d
+    );
+    let least = measurement
+        .samples
+        .iter()
+        .map(|sample| sample.brdf)
+        .fold(f64::INFINITY, f64::min);
     let is_brdf = measurement.read_as.quantity == Quantity::Brdf;
     // Divided by pi the darkest direction must be possible.
     Some(Hint::new(

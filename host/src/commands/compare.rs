@@ -154,5 +154,5 @@ fn picture(measurement: &Measurement, models: &[Model], fits: &[Fitted]) -> Stri
             }
         })
         .collect();
-    plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)
+    plot::overlay_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &lines)
 }

@@ -49,8 +49,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     Target::differ(&table.iter().chain(&picture).collect::<Vec<_>>())?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if let (Some(target), [measurement]) = (&picture, &measurements[..]) {
-        let left_out: Vec<Sample<f64>> = measurement.masked.iter().map(|(_, sample)| *sample).collect();
-        let drawn = plot::scan_svg(&measurement.label(), &measurement.samples, &left_out, &[]);
+        let drawn = plot::scan_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &[]);
         picture::save(target, &drawn)?;
     } else if picture.is_some() {
         return Err(Error::new("--plot draws one scan").help("give one scan, or choose one with --column"));
@@ -95,7 +94,10 @@ impl<'a> Inspected<'a> {
         let groups = plane::by_angle(&measurement.samples);
         Inspected {
             measurement,
-            angles: groups.iter().map(|(theta_i, group)| Angle::new(*theta_i, group)).collect(),
+            angles: groups
+                .iter()
+                .map(|(theta_i, group)| Angle::new(*theta_i, group))
+                .collect(),
             hints: hints::of_scan(measurement),
         }
     }
@@ -105,7 +107,9 @@ impl Angle {
     fn new(theta_i: f64, group: &[&Sample<f64>]) -> Angle {
         let signed = |sample: &&&Sample<f64>| plane::signed_theta_s(sample);
         let in_plane: Vec<&&Sample<f64>> = group.iter().filter(|sample| signed(sample).is_some()).collect();
-        let theta_s = group.iter().map(|sample| plane::signed_theta_s(sample).unwrap_or(sample.theta_s.to_degrees()));
+        let theta_s = group
+            .iter()
+            .map(|sample| plane::signed_theta_s(sample).unwrap_or(sample.theta_s.to_degrees()));
         let brightest = in_plane.iter().max_by(|a, b| a.brdf.total_cmp(&b.brdf));
         Angle {
             theta_i: tidy(theta_i.to_degrees()),
@@ -126,5 +130,7 @@ fn tidy(degrees: f64) -> f64 {
 }
 
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        (low.min(x), high.max(x))
+    })
 }

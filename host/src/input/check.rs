@@ -196,7 +196,11 @@ fn masked(sample: &Sample<f64>, value: f64, options: &ReadOptions) -> Option<Rea
 
 /// Is a row within 8 degrees of the direction of incidence?
 fn is_near_retro(row: &Row, read_as: &ReadAs) -> bool {
-    let sign = if read_as.forward == Forward::Negative { -1.0 } else { 1.0 };
+    let sign = if read_as.forward == Forward::Negative {
+        -1.0
+    } else {
+        1.0
+    };
     let delta_phi = row.delta_phi.map_or(f64::PI, |phi| read_as.angles.azimuth(phi));
     let sample = Sample {
         delta_phi,

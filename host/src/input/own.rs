@@ -14,7 +14,9 @@ pub fn table(scans: &[Measurement]) -> String {
     let all = || scans.iter().flat_map(|scan| &scan.samples);
     let out_of_plane = all().any(|sample| sample.delta_phi != f64::PI);
     let in_degrees = all().all(|sample| {
-        let polar = [sample.theta_i, sample.theta_s].iter().all(|&angle| degrees(angle, f64::to_radians).is_some());
+        let polar = [sample.theta_i, sample.theta_s]
+            .iter()
+            .all(|&angle| degrees(angle, f64::to_radians).is_some());
         polar && degrees(sample.delta_phi, azimuth).is_some()
     });
     let weighted = all().any(|sample| sample.weight != 1.0);
@@ -67,7 +69,9 @@ fn degrees(radians: f64, read: fn(f64) -> f64) -> Option<f64> {
     let near = radians.to_degrees();
     let short = (0..=15).filter_map(|decimals| format!("{near:.decimals$}").parse().ok());
     let beside = [near, near.next_up(), near.next_down()];
-    short.chain(beside).find(|&degrees| read(degrees).to_bits() == radians.to_bits())
+    short
+        .chain(beside)
+        .find(|&degrees| read(degrees).to_bits() == radians.to_bits())
 }
 
 #[cfg(test)]
@@ -79,12 +83,22 @@ mod tests {
         parse("scan.csv", text.as_bytes(), options).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 
+    /// Name, unit of the weights, and numbers of a scan.
+    type Bits = (Option<String>, Option<u64>, Vec<[u64; 5]>);
+
     /// Everything that a fit sees.
-    fn bits(scans: &[Measurement]) -> Vec<(Option<String>, Option<u64>, Vec<[u64; 5]>)> {
+    fn bits(scans: &[Measurement]) -> Vec<Bits> {
         let of = |scan: &Measurement| {
             let samples = scan.samples.iter();
             let all = samples.map(|sample| {
-                [sample.theta_i, sample.theta_s, sample.delta_phi, sample.brdf, sample.weight].map(f64::to_bits)
+                [
+                    sample.theta_i,
+                    sample.theta_s,
+                    sample.delta_phi,
+                    sample.brdf,
+                    sample.weight,
+                ]
+                .map(f64::to_bits)
             });
             (scan.name.clone(), scan.sigma_ln.map(f64::to_bits), all.collect())
         };
@@ -111,10 +125,22 @@ mod tests {
             (format!("theta_i,theta_s,brdf,sigma\n{odd}"), &drop),
             (format!("theta_i,theta_s,brdf,weight\n{odd}"), &drop),
             (format!("theta_i,theta_s,azimuth,brdf\n{odd}"), &drop),
-            ("theta_i,theta_s,brdf\n0.3,0.1,0.2\n0.7,1.1,0.3\n0.123456789,-0.987654321,0.4\n".to_string(), &radians),
-            ("theta_i,theta_s,raa,brdf\n0.3,0.1,3.14159,0.2\n0.7,1.1,-2.5,0.3\n".to_string(), &radians),
-            ("theta_i,theta_s,nm,R,G\n30,1,x,0.5,0.25\n30,2,y,0.125,0.1\n".replace("nm", "pol"), &drop),
-            ("theta_i,theta_s,wavelength,brdf\n1,1.5,550,0.1\n1,0.5,550,0.2\n1,1.5,550,0.4\n".to_string(), &drop),
+            (
+                "theta_i,theta_s,brdf\n0.3,0.1,0.2\n0.7,1.1,0.3\n0.123456789,-0.987654321,0.4\n".to_string(),
+                &radians,
+            ),
+            (
+                "theta_i,theta_s,raa,brdf\n0.3,0.1,3.14159,0.2\n0.7,1.1,-2.5,0.3\n".to_string(),
+                &radians,
+            ),
+            (
+                "theta_i,theta_s,nm,R,G\n30,1,x,0.5,0.25\n30,2,y,0.125,0.1\n".replace("nm", "pol"),
+                &drop,
+            ),
+            (
+                "theta_i,theta_s,wavelength,brdf\n1,1.5,550,0.1\n1,0.5,550,0.2\n1,1.5,550,0.4\n".to_string(),
+                &drop,
+            ),
         ] {
             let scans = read(&text, options);
             let written = table(&scans);
@@ -123,6 +149,9 @@ mod tests {
             assert_eq!(table(&again).lines().count(), written.lines().count());
         }
         let plain = table(&read("theta_i,theta_s,brdf\n22.3,-80.5,0.1\n", &drop));
-        assert!(plain.ends_with("theta_i_deg,theta_s_deg,brdf_per_sr\n22.3,-80.5,0.1\n"), "{plain}");
+        assert!(
+            plain.ends_with("theta_i_deg,theta_s_deg,brdf_per_sr\n22.3,-80.5,0.1\n"),
+            "{plain}"
+        );
     }
 }

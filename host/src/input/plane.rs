@@ -46,7 +46,8 @@ mod tests {
             delta_phi: delta_phi.to_radians(),
             ..Sample::in_plane(0.5, theta_s.to_radians(), 1.0)
         };
-        let signed = |theta_s, delta_phi| signed_theta_s(&at(theta_s, delta_phi)).map(|angle| (angle * 1e6).round() / 1e6);
+        let signed =
+            |theta_s, delta_phi| signed_theta_s(&at(theta_s, delta_phi)).map(|angle| (angle * 1e6).round() / 1e6);
         assert_eq!(signed(30.0, 180.0), Some(30.0));
         assert_eq!(signed(30.0, 0.0), Some(-30.0));
         assert_eq!(signed(-30.0, 180.0), Some(-30.0));

@@ -42,6 +42,9 @@ struct Document<'a> {
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
     evaluations: Evaluations,
+    /// What a person would say.
+    #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
+    hints: &'a [Hint],
     #[serde(flatten)]
     time: Columns<'a>,
 }
@@ -103,6 +106,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
+        hints: &scan.hints,
         time: Columns(scan, Json::Time),
     }
 }

@@ -15,7 +15,9 @@ const DARKER: f64 = 0.4;
 /// How far the shadow reaches from the direction of incidence, whole degrees; none if at fewer than half of the angles of incidence there is one.
 pub fn width(samples: &[Sample<f64>]) -> Option<f64> {
     let groups = plane::by_angle(samples);
-    let found = groups.iter().filter_map(|(theta_i, group)| one(theta_i.to_degrees(), &in_plane(group)));
+    let found = groups
+        .iter()
+        .filter_map(|(theta_i, group)| one(theta_i.to_degrees(), &in_plane(group)));
     let (mut seen, mut widths) = (0, Vec::new());
     for width in found {
         seen += 1;
@@ -28,7 +30,9 @@ pub fn width(samples: &[Sample<f64>]) -> Option<f64> {
 /// At one angle of incidence: whether it can be seen, and how wide it is.
 fn one(theta_i: f64, points: &[(f64, f64)]) -> Option<Option<f64>> {
     let side = |sign: f64| {
-        let there = points.iter().filter(|point| AROUND.contains(&(sign * (point.0 + theta_i))));
+        let there = points
+            .iter()
+            .filter(|point| AROUND.contains(&(sign * (point.0 + theta_i))));
         median(there.map(|point| point.1))
     };
     // A lobe on one side must not make the other side look dark.
@@ -42,7 +46,9 @@ fn one(theta_i: f64, points: &[(f64, f64)]) -> Option<Option<f64>> {
         return Some(None);
     }
     let dark = points.iter().filter(|point| point.1 < around - 0.5 * DARKER);
-    let reach = dark.map(|point| (point.0 + theta_i).abs()).filter(|&far| far < *AROUND.start());
+    let reach = dark
+        .map(|point| (point.0 + theta_i).abs())
+        .filter(|&far| far < *AROUND.start());
     Some(Some(reach.fold(0.0, f64::max).floor() + 1.0))
 }
 
@@ -53,7 +59,11 @@ mod tests {
     fn scan(depth: f64) -> Vec<Sample<f64>> {
         let at = |theta_i: f64, theta_s: f64| {
             let hidden = (theta_i + theta_s).abs() <= 4.0;
-            Sample::in_plane(theta_i.to_radians(), theta_s.to_radians(), if hidden { 0.1 * depth } else { 0.1 })
+            Sample::in_plane(
+                theta_i.to_radians(),
+                theta_s.to_radians(),
+                if hidden { 0.1 * depth } else { 0.1 },
+            )
         };
         let of = |theta_i| (-80..=80).map(move |theta_s| at(theta_i, f64::from(theta_s)));
         [10.0, 30.0, 60.0].into_iter().flat_map(of).collect()

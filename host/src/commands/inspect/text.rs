@@ -32,10 +32,16 @@ fn page(scan: &Inspected) -> String {
     lines.push(format!("  samples    {}", measurement.samples.len()));
     lines.extend(scan.angles.iter().take(LISTED).map(angle));
     if scan.angles.len() > LISTED {
-        lines.push(format!("    and {} more angles of incidence, in --format json", scan.angles.len() - LISTED));
+        lines.push(format!(
+            "    and {} more angles of incidence, in --format json",
+            scan.angles.len() - LISTED
+        ));
     }
     if let Some(sigma) = measurement.sigma_ln {
-        lines.push(format!("  weights    of standard deviations, {:.2} % at a weight of 1", 100.0 * sigma));
+        lines.push(format!(
+            "  weights    of standard deviations, {:.2} % at a weight of 1",
+            100.0 * sigma
+        ));
     }
     if let Some(summary) = left_out::summary(&measurement.left_out) {
         lines.push(format!("  left out   {summary}"));
@@ -54,9 +60,9 @@ fn angle(angle: &Angle) -> String {
             digits(high)
         ),
     };
-    let brightest = angle
-        .brightest
-        .map_or(String::new(), |degrees| format!(", brightest at {} deg", digits(degrees)));
+    let brightest = angle.brightest.map_or(String::new(), |degrees| {
+        format!(", brightest at {} deg", digits(degrees))
+    });
     format!(
         "    theta_i {:>8} deg: {:>4} samples, {plane}, theta_s {} to {} deg, BRDF {} to {} /sr{brightest}",
         digits(angle.theta_i),

@@ -1,5 +1,6 @@
 //! `brdfit export`: what each form says is the model, to the digits that it has.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -102,7 +103,7 @@ fn openmaterial_reads_back_and_has_what_its_schema_requires() {
     assert_eq!(lengths, [8, 4, 4, 4, 12]);
     let rows: Vec<Vec<f64>> = serde_json::from_value(file["brdf"]["lookupTable"].clone()).unwrap();
     assert!(rows.is_sorted(), "the schema sorts the table by its columns");
-    let largest = [17.16e-3, 1.570796, 1.570796, 6.283185, f64::MAX];
+    let largest = [17.16e-3, FRAC_PI_2, FRAC_PI_2, TAU, f64::MAX];
     assert!(
         rows.iter()
             .flat_map(|row| row.iter().zip(largest))

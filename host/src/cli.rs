@@ -118,9 +118,9 @@ fn color(arguments: &[OsString], auto: bool) -> bool {
 fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Result<Ended, Error> {
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
+        Command::Fit(arguments) => return fit::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
         Command::Report(arguments) => report::run(arguments, given, streams),
-        Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Profile(arguments) => profile::run(arguments, streams),

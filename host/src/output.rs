@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::STDIN;
+use crate::interrupt;
 use crate::plain;
 use crate::target::Target;
 
@@ -98,9 +99,12 @@ pub fn shortest(x: f64) -> String {
 /// # Errors
 /// As [`Target::new`].
 pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option<Target>, Error> {
-    path.filter(|path| path.as_os_str() != STDIN)
+    let target = path
+        .filter(|path| path.as_os_str() != STDIN)
         .map(|path| Target::new(path, inputs))
-        .transpose()
+        .transpose()?;
+    interrupt::await_reader(target.is_none());
+    Ok(target)
 }
 
 /// Writes to a file, or to the stream if there is none.
@@ -110,12 +114,21 @@ pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option
 pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write) -> Result<(), Error> {
     match target {
         Some(target) => target.write(contents),
-        None => match stream.write_all(contents).and_then(|()| stream.flush()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Error::new(format!("standard output cannot be written: {error}")))
-            }
-            _ => Ok(()),
-        },
+        None => to_stream(stream, |stream| stream.write_all(contents)),
+    }
+}
+
+/// Writes to standard output.
+///
+/// # Errors
+/// The stream breaks, or what `write` fails with; a reader that wants no more, such as `head`, is no error.
+pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    interrupt::await_reader(false);
+    match write(stream).and_then(|()| stream.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error
+            .downcast::<Error>()
+            .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}")))),
+        _ => Ok(()),
     }
 }
 

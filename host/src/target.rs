@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::interrupt;
 
 /// For a command that reads nothing.
 pub const NO_INPUTS: [&Path; 0] = [];
@@ -77,6 +78,7 @@ impl Target {
     /// # Errors
     /// As [`Target::write`], and what `write` fails with; an [`Error`] inside its failure comes out as it is.
     pub fn write_with(&self, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), Error> {
+        let _until_it_is_whole = interrupt::writing();
         let there = self.there()?;
         let all = || -> io::Result<()> {
             // A device or a pipe, such as /dev/null, is written to and not replaced.

@@ -13,6 +13,7 @@ mod summary;
 
 use std::io::{self, Seek, Write};
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
@@ -36,7 +37,7 @@ use summary::Summary;
 /// Fits many scans; keeps what is done when interrupted
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C the scans in work are finished and kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
+    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
 )]
 pub struct Arguments {
     /// Scans, folders of scans, patterns in quotes, or @LIST, a file of names (@- is standard input)
@@ -112,12 +113,13 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         );
     }
     let journal = Mutex::new(journal);
+    let interrupt = interrupt::keeping();
     let job = run::Job {
         files: &files,
         options,
         read: &arguments.read,
         rows: head.rows,
-        interrupt: interrupt::flag(),
+        interrupt,
     };
     let places: Vec<usize> = (0..files.len()).filter(|&index| shard.has(index)).collect();
     let bar = progress(streams.progress, places.len());
@@ -125,24 +127,33 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let done = pool.install(|| run::run(&job, &places, &journal, &|| bar.inc(1)));
     bar.finish_and_clear();
     let (done, mut journal) = (done?, journal.into_inner().unwrap_or_else(PoisonError::into_inner));
+    let kept = match scratch {
+        Some(_) => "with --out FILE they would have been kept".to_string(),
+        None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
+    };
+    let interrupted = || Ended {
+        code: interrupt::EXIT_CODE,
+        why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
+    };
     if done < places.len() {
-        let kept = match scratch {
-            Some(_) => "with --out FILE they would have been kept".to_string(),
-            None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
-        };
-        return Ok(Ended {
-            code: interrupt::EXIT_CODE,
-            why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
-        });
+        return Ok(interrupted());
     }
-    let mut records = places.iter().map(|&index| journal.record(index));
+    // Hundreds of thousands of rows take longer to write than an interrupt may wait.
+    let mut records = places.iter().map(|&index| match interrupt.load(Ordering::Relaxed) {
+        true => Err(Error::new("interrupted")),
+        false => journal.record(index),
+    });
     let ended = match (arguments.shard, &target) {
         (Some(_), Some(target)) => {
             let mut summary = Summary::default();
-            target.write_with(|file| part(&head, &mut summary.of(&mut records), file))?;
-            summary.tell(true, streams)
+            let written = target.write_with(|file| part(&head, &mut summary.of(&mut records), file));
+            written.map(|()| summary.tell(true, streams))
         }
-        _ => deliver(form, &head.columns, &mut records, target.as_ref(), streams)?,
+        _ => deliver(form, &head.columns, &mut records, target.as_ref(), streams),
+    };
+    let ended = match ended {
+        Err(_) if interrupt.load(Ordering::Relaxed) => return Ok(interrupted()),
+        ended => ended?,
     };
     journal.remove();
     Ok(ended)
@@ -163,22 +174,12 @@ pub(super) fn deliver(
     if let Some(target) = target {
         target.write_with(|file| results::write(form, columns, &mut summary.of(records), file))?;
     } else {
-        let mut copy = || -> io::Result<()> {
+        output::to_stream(streams.output, |stream| {
             let mut scratch = tempfile::tempfile()?;
             results::write(form, columns, &mut summary.of(records), &mut scratch)?;
             scratch.rewind()?;
-            io::copy(&mut scratch, streams.output)?;
-            streams.output.flush()
-        };
-        match copy() {
-            // A reader that wants no more, such as `head`, is no error.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                return Err(error
-                    .downcast::<Error>()
-                    .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}"))));
-            }
-            _ => {}
-        }
+            io::copy(&mut scratch, stream).map(drop)
+        })?;
     }
     Ok(summary.tell(target.is_some(), streams))
 }

@@ -1,6 +1,7 @@
 //! `brdfit fit`: files in, reports out.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::Args;
@@ -11,11 +12,12 @@ use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::{FitOptions, Method};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
+use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::plot::{self, picture};
 use crate::result;
-use crate::streams::Streams;
+use crate::streams::{Ended, Streams};
 
 /// Fits the model to scans
 #[derive(Args, Debug)]
@@ -40,11 +42,11 @@ pub struct Arguments {
     read: ReadOptions,
 }
 
-/// Runs the subcommand; nothing is written before every scan is read and fitted.
+/// Runs the subcommand; nothing is written before every scan is read and fitted, or an interrupt leaves those that are.
 ///
 /// # Errors
 /// The first thing that is wrong with options, files or the fit.
-pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let options = arguments.search.fit_options()?;
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), &arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
@@ -53,17 +55,38 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     }
     let pool = arguments.search.pool()?;
     let bar = progress(streams.progress, &options, measurements.len());
-    let results: Vec<Result<FittedScan, Error>> = pool.install(|| {
+    // Of one scan nothing is finished before all is.
+    let several = measurements.len() > 1;
+    let interrupted = || several && interrupt::keeping().load(Ordering::Relaxed);
+    let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {
+            if interrupted() {
+                return None;
+            }
             let report = fit(measurement, &options);
             bar.inc(1);
-            report
+            Some(report)
         })
         .collect()
     });
     bar.finish_and_clear();
-    let reports: Vec<FittedScan> = results.into_iter().collect::<Result<_, _>>()?;
+    let reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    let missing = measurements.len() - reports.len();
+    let ended = match missing {
+        0 => Ended::default(),
+        _ => Ended {
+            code: interrupt::EXIT_CODE,
+            why: format!(
+                "interrupted: {} of {} scans are fitted and written\n",
+                reports.len(),
+                measurements.len()
+            ),
+        },
+    };
+    if reports.is_empty() {
+        return Ok(ended);
+    }
     let text = match arguments.output.format {
         TableFormat::Text => result::text(&reports, arguments.minima),
         TableFormat::Json => result::json(&reports),
@@ -78,7 +101,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
-    Ok(())
+    Ok(ended)
 }
 
 /// A bar over the scans if there are several, a clock if one takes long.

@@ -136,6 +136,12 @@ fn of_results(
         let all = match files.entry(one.file) {
             Entry::Occupied(read) => read.into_mut(),
             Entry::Vacant(place) => {
+                // What a file of results says is no word of the user's, and a pipe would be waited for.
+                if place.key().metadata().is_ok_and(|there| !there.is_file()) {
+                    return Err(Error::new("this is no file")
+                        .in_file(file)
+                        .help(format!("{name} names it; give the results of scans in files")));
+                }
                 let bytes = input::read_bytes(std::slice::from_ref(place.key()), &mut std::io::empty());
                 let help = || format!("{name} names it; call report where the fit was made");
                 let bytes = bytes.map_err(|error| error.help(help()))?;

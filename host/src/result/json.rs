@@ -84,10 +84,11 @@ fn document(scan: &FittedScan) -> Document<'_> {
         hits: minimum.hits,
         first_start: minimum.first_start,
     };
-<<<<<<< HEAD
     Document {
         head: Columns(scan, Json::Head),
         input: scan.read_as,
+        not_used: &scan.about.unused,
+        notes: &scan.about.notes,
         left_out: &scan.left_out,
         found: Columns(scan, Json::Found),
         parameters: by_name(outcome.params.to_array()),
@@ -96,30 +97,6 @@ fn document(scan: &FittedScan) -> Document<'_> {
         uncertainty: known(&outcome.params, &outcome.uncertainty, &scan.derived),
         derived: scan.derived.iter().map(at_angle).collect(),
         end: Columns(scan, Json::End),
-=======
-    JsonReport {
-        file: &report.file,
-        scan: report.scan.as_deref(),
-        input: report.read_as,
-        not_used: &report.about.unused,
-        notes: &report.about.notes,
-        left_out: &report.left_out,
-        samples: outcome.samples,
-        method: names::method(report.options.method),
-        seed: report.options.seed,
-        starts: report.options.starts(),
-        terms: term_names(report.options.terms),
-        mse2: outcome.mse2,
-        rms_ln: outcome.rms_ln,
-        chi2: report.chi2,
-        robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
-        parameters: json_parameters(&outcome.params),
-        at_bound: &outcome.at_bound,
-        selection: report.choice.as_ref().map(selection),
-        uncertainty: known(&outcome.params, &outcome.uncertainty, &report.derived),
-        derived: report.derived.iter().map(at_angle).collect(),
-        stop: names::stop(outcome.stop),
->>>>>>> main
         minima: outcome.minima.iter().map(minimum).collect(),
         evaluations: Evaluations {
             cost: outcome.evaluations.cost,

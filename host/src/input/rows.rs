@@ -114,16 +114,16 @@ fn parts(line: &str, delimiter: u8) -> impl Iterator<Item = &str> {
         // Most cells have nothing to trim.
         let bare = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
         let bytes = cell.as_bytes();
-        if bare(bytes.first()) && bare(bytes.last()) { cell } else { cell.trim() }
+        if bare(bytes.first()) && bare(bytes.last()) {
+            cell
+        } else {
+            cell.trim()
+        }
     })
 }
 
 /// As [`each`] where cells may be in quotes, and so hold delimiters and line ends.
-fn quoted(
-    text: &str,
-    delimiter: u8,
-    mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>,
-) -> Result<(), Error> {
+fn quoted(text: &str, delimiter: u8, mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)

@@ -41,10 +41,10 @@ fn wavelengths(rows: usize) -> Vec<u8> {
 /// Few rows of many columns, one for each wavelength.
 fn columns(cells: usize) -> Vec<u8> {
     let mut text = String::from("theta_i,theta_s");
-    (0..cells / 4).for_each(|k| drop(write!(text, ",{} nm", 400.0 + k as f64 / 100.0)));
+    (0..cells / 4).for_each(|k| text += &format!(",{} nm", 400.0 + k as f64 / 100.0));
     for theta_s in [-40, -20, 20, 40] {
         let _ = write!(text, "\n30,{theta_s}");
-        (0..cells / 4).for_each(|k| drop(write!(text, ",{:.6}", row(k).2)));
+        (0..cells / 4).for_each(|k| text += &format!(",{:.6}", row(k).2));
     }
     text.into_bytes()
 }
@@ -52,10 +52,10 @@ fn columns(cells: usize) -> Vec<u8> {
 /// A matrix of 20 angles of incidence.
 fn matrix(cells: usize) -> Vec<u8> {
     let mut text = String::from("theta_s");
-    (0..20).for_each(|k| drop(write!(text, "\t{}", 4 * k)));
+    (0..20).for_each(|k| text += &format!("\t{}", 4 * k));
     for k in 0..cells / 20 {
         let _ = write!(text, "\n{:.4}", k as f64 * 3200.0 / cells as f64 - 80.0);
-        (0..20).for_each(|i| drop(write!(text, "\t{:.6}", row(k * 20 + i).2)));
+        (0..20).for_each(|i| text += &format!("\t{:.6}", row(k * 20 + i).2));
     }
     text.into_bytes()
 }

@@ -20,7 +20,7 @@ use crate::streams::{Ended, Streams};
     version,
     propagate_version = true,
     disable_help_subcommand = true,
-    after_help = "Exit codes: 0 done, 1 some scans of a batch could not be fitted, 2 wrong input or options, 130 interrupted.\n\nExample:\n  brdfit fit paint.csv"
+    after_help = "Exit codes: 0 done, 1 some scans of a batch could not be fitted, 2 wrong input or options, 130 interrupted.\nExample: brdfit fit paint.csv"
 )]
 struct Cli {
     #[command(subcommand)]

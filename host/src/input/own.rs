@@ -117,6 +117,10 @@ mod tests {
             repeats: true,
             ..ReadOptions::default()
         };
+        let near_normal = ReadOptions {
+            angles: Some(super::super::units::Angles::Deg),
+            ..drop.clone()
+        };
         let radians = ReadOptions {
             angles: Some(super::super::units::Angles::Rad),
             ..drop.clone()
@@ -139,7 +143,7 @@ mod tests {
             ),
             (
                 "theta_i,theta_s,wavelength,brdf\n1,1.5,550,0.1\n1,0.5,550,0.2\n1,1.5,550,0.4\n".to_string(),
-                &drop,
+                &near_normal,
             ),
         ] {
             let scans = read(&text, options);

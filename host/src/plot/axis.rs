@@ -104,38 +104,41 @@ impl Axis {
             };
             steps(low, high, 1.0).map(tick).collect()
         };
-        // The digits that have a label, where there are not enough powers of ten.
-        let digits = |labelled: &[u32]| -> Vec<Tick> {
+        // The mantissas that have a label, where there are not enough powers of ten.
+        let mantissas = |labelled: &[f64]| -> Vec<Tick> {
             let mut ticks = Vec::new();
+            let minor = (1..10).map(f64::from).filter(|mantissa| !labelled.contains(mantissa));
+            let all: Vec<(f64, bool)> = labelled.iter().map(|&mantissa| (mantissa, true)).collect();
+            let all: Vec<(f64, bool)> = all.into_iter().chain(minor.map(|mantissa| (mantissa, false))).collect();
             for decade in steps(low - 1.0, high, 1.0).filter(|_| decades <= most) {
-                for mantissa in 1..10 {
-                    let at = decade + log10(f64::from(mantissa));
-                    let value = f64::from(mantissa) * Real::exp(decade / LOG10_E);
+                for &(mantissa, is_labelled) in &all {
+                    let at = decade + log10(mantissa);
+                    let value = mantissa * Real::exp(decade / LOG10_E);
                     if low <= at && at <= high {
-                        let label = labelled.contains(&mantissa).then(|| svg::number(value));
+                        let label = is_labelled.then(|| svg::number(value));
                         ticks.push(Tick { at, label });
                     }
                 }
             }
             ticks
         };
+        const FEW: [f64; 3] = [1.0, 2.0, 5.0];
+        const SOME: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
+        const WHOLE: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+        const HALVES: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
         let ticks = if decades >= 3.0 {
             let step = (decades / most).ceil().max(1.0);
             let mut ticks = with_labels((1..=step as u32).rev().map(|step| powers(f64::from(step))));
             ticks.extend(
-                digits(&[])
+                mantissas(&[])
                     .into_iter()
                     .filter(|tick| (tick.at - tick.at.round()).abs() > 1e-9),
             );
             ticks
-        } else if high - low < 0.8 {
-            with_labels(
-                [&[1, 2, 3, 5, 7][..], &[1, 2, 3, 4, 5, 6, 7, 8, 9]]
-                    .into_iter()
-                    .map(digits),
-            )
         } else {
-            with_labels([&[1, 2, 5][..], &[1, 2, 3, 5, 7]].into_iter().map(digits))
+            let choices: [&[f64]; 4] = [&FEW, &SOME, &WHOLE, &HALVES];
+            let enough = if high - low < 0.8 { 1 } else { 0 };
+            with_labels(choices[enough..].iter().map(|labelled| mantissas(labelled)))
         };
         Axis {
             low,

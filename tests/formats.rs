@@ -2,9 +2,8 @@
 
 use std::fs;
 
-use brdfit::engine;
 use brdfit::input::{self, ReadOptions};
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use brdfit_suite::program::{self, write};
@@ -23,7 +22,7 @@ fn brdf(theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         delta_phi.to_radians()
     };
     let geometry = Geometry::new(theta_i.to_radians(), theta_s.to_radians(), delta_phi).expect("valid angles");
-    Real::exp(engine::ln_f(&Params::from_array(TRUTH), &geometry))
+    Real::exp(Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry))
 }
 
 /// Scattering angles in plane.
@@ -429,7 +428,7 @@ fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
 fn rms_from_truth(samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-        let residual = engine::ln_f(&Params::from_array(TRUTH), &geometry) - Real::ln(sample.brdf);
+        let residual = Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry) - Real::ln(sample.brdf);
         residual * residual
     });
     (squares.sum::<f64>() / samples.len() as f64).sqrt()

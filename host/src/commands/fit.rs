@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::{FitOptions, Method};
+use crate::engine::{FitOptions, Material, Method};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::SearchArguments;
@@ -69,7 +69,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Csv => result::csv(&reports, arguments.minima),
     };
     if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
-        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+        let material = |values| Material {
+            values,
+            ..report.outcome.material()
+        };
+        let minima = report.outcome.minima.iter();
+        let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             path,
             &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),

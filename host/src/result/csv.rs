@@ -1,8 +1,7 @@
 //! Reports as a table.
 
-use brdfit_core::brdf::{NAMES, Params};
-
 use crate::analysis::fit::FittedScan;
+use crate::engine::Values;
 use crate::names;
 use crate::output::shortest;
 use crate::terms::term_names;
@@ -10,8 +9,11 @@ use crate::terms::term_names;
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(reports: &[FittedScan], minima: bool) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut head = vec!["file", "scan", "samples", "method", "seed", "starts", "terms"];
-    head.extend(["mse2"].iter().chain(&NAMES));
+    let mut head = vec![
+        "file", "scan", "samples", "method", "seed", "starts", "model", "terms", "mse2",
+    ];
+    let names = parameters(reports);
+    head.extend(&names);
     head.extend(if minima {
         ["minimum", "hits", "first_start"].as_slice()
     } else {
@@ -23,7 +25,7 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
     let _ = writer.write_record(&head);
     for report in reports {
         let outcome = &report.outcome;
-        let row = |mse2: f64, params: &Params<f64>| {
+        let row = |mse2: f64, params: &Values| {
             let mut row = vec![
                 report.file.clone(),
                 report.scan.clone().unwrap_or_default(),
@@ -31,10 +33,15 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                 names::method(report.options.method).to_string(),
                 report.options.seed.to_string(),
                 report.options.starts().to_string(),
-                term_names(report.options.terms).join("+"),
+                outcome.model.name.to_string(),
+                term_names(outcome.terms).join("+"),
                 shortest(mse2),
             ];
-            row.extend(params.to_array().map(shortest));
+            row.extend(
+                names
+                    .iter()
+                    .map(|name| outcome.model.value(params, name).map_or(String::new(), shortest)),
+            );
             row
         };
         if minima {
@@ -65,4 +72,15 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
         }
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// The names of the parameters of all models, each once.
+fn parameters(reports: &[FittedScan]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for parameter in reports.iter().flat_map(|report| report.outcome.model.parameters) {
+        if !names.contains(&parameter.name) {
+            names.push(parameter.name);
+        }
+    }
+    names
 }

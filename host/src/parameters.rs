@@ -2,6 +2,7 @@
 
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
+use crate::output::shortest;
 use crate::terms::term_names;
 
 /// A permitted range of one parameter.
@@ -25,7 +26,7 @@ pub fn check(model: &Model, index: usize, value: f64) -> Result<(), Error> {
     if value >= least && value <= largest {
         return Ok(());
     }
-    Err(Error::new(format!("{} can not be {value}", parameter.name))
+    Err(Error::new(format!("{} cannot be {}", parameter.name, shortest(value)))
         .help(format!("take a number from {least} to {largest}")))
 }
 

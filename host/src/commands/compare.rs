@@ -11,7 +11,7 @@ use crate::engine::{self, FitOptions, Model, Outcome};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::four;
-use crate::output::{Format, OutputArguments};
+use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
@@ -45,16 +45,18 @@ pub struct Arguments {
 /// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = models(arguments.models.as_deref())?;
+    let inputs = std::slice::from_ref(&arguments.scan);
+    let (target, plot) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let fits = compare(&models, &measurement, arguments.seed)?;
     let text = match arguments.output.format {
         Format::Text => text(&measurement, &fits),
         Format::Json => json(&measurement, &fits),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &picture(&measurement, &fits))?;
+    if let Some(plot) = &plot {
+        picture::save(plot, &picture(&measurement, &fits))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }
@@ -139,7 +141,7 @@ fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
         })
         .collect();
     let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
-    format!("{value:#}\n")
+    output::json(&value)
 }
 
 fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {

@@ -14,7 +14,7 @@ use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::all_parameters;
-use crate::output::{OutputArguments, TableFormat};
+use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::parameters::model;
 use crate::plot::{self, picture};
 use crate::streams::Streams;
@@ -65,6 +65,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     };
     let truth = arguments.truth.as_deref();
     let truth = truth.map(|list| all_parameters(model, list, "--truth")).transpose()?;
+    let (target, picture) = arguments
+        .output
+        .targets(arguments.plot.as_deref(), arguments.scan.as_slice())?;
     let measurement = match &arguments.scan {
         Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
         None => None,
@@ -96,10 +99,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Json => write::json(&studies, arguments.seeds),
         TableFormat::Csv => write::csv(&studies),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &plot::converge_svg(&studies, arguments.seeds))?;
+    if let Some(picture) = &picture {
+        picture::save(picture, &plot::converge_svg(&studies, arguments.seeds))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
 }

@@ -9,7 +9,7 @@ use crate::export::model::Model;
 use crate::export::{bird, constants, glsl, mitsuba, native, zemax};
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
-use crate::output::deliver;
+use crate::output::{deliver, target};
 use crate::parameters;
 use crate::streams::Streams;
 
@@ -74,6 +74,7 @@ enum Form {
 /// # Errors
 /// There is no such result, or its parameters have no BRDF.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = target(arguments.output.as_deref(), arguments.result.as_slice())?;
     let mut model = match (&arguments.result, &arguments.params) {
         (Some(path), _) => {
             let bytes = if path.as_os_str() == STDIN {
@@ -105,5 +106,5 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Form::Rust => constants::rust(&model)?,
         Form::Bird => bird::write(&model),
     };
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }

@@ -11,7 +11,7 @@ use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::{Format, OutputArguments, shortest};
+use crate::output::{self, Format, OutputArguments, deliver, shortest};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
 use crate::streams::Streams;
@@ -41,6 +41,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
     let shared = shared(options.model, &arguments.share)?;
+    let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
@@ -57,7 +58,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Text => text(&options, &measurements, &fitted),
         Format::Json => json(&options, &measurements, &fitted),
     };
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }
@@ -134,5 +135,5 @@ fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
         "cost_separate": fitted.separate,
         "scans": scans,
     });
-    format!("{value:#}\n")
+    output::json(&value)
 }

@@ -16,7 +16,7 @@ use crate::engine::{FitError, FitOptions, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver};
 use crate::plot::{self, picture};
 use crate::streams::Streams;
 use crate::terms::term_names;
@@ -55,6 +55,8 @@ pub struct Arguments {
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
+    let inputs = std::slice::from_ref(&arguments.scan);
+    let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let pool = arguments.search.pool()?;
     let samples = &measurement.samples;
@@ -98,10 +100,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Text => text::write(&findings),
         Format::Json => json::write(&findings),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &plot::profile_svg(&findings.name, &findings.profiles))?;
+    if let Some(picture) = &picture {
+        picture::save(picture, &plot::profile_svg(&findings.name, &findings.profiles))?;
     }
-    arguments.output.deliver(&written, streams.output)?;
+    deliver(written.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }

@@ -12,9 +12,10 @@ use crate::engine::Material;
 use crate::error::{Error, shown};
 use crate::input::azimuth;
 use crate::options::fixed;
-use crate::output::{deliver, shortest};
+use crate::output::{deliver, shortest, target};
 use crate::parameters;
 use crate::streams::Streams;
+use crate::target::NO_INPUTS;
 
 /// Computes the BRDF at given angles and parameters
 #[derive(Args, Debug)]
@@ -79,16 +80,27 @@ enum NoiseKind {
     Pos,
 }
 
+/// Rows of one table, which is made in memory: half a gigabyte.
+const MOST_ROWS: u128 = 10_000_000;
+
 /// Runs the subcommand.
 ///
 /// # Errors
 /// Angles or parameters that have no BRDF.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = target(arguments.output.as_deref(), &NO_INPUTS)?;
     let material = material(arguments)?;
     let theta_i = angles("theta-i", &arguments.theta_i)?;
     let theta_s = angles("theta-s", &arguments.theta_s)?;
     let delta_phi = arguments.delta_phi.as_deref();
     let delta_phi = delta_phi.map(|list| angles("delta-phi", list)).transpose()?;
+    let azimuths = delta_phi.as_ref().map_or(1, Vec::len);
+    let rows = theta_i.len() as u128 * theta_s.len() as u128 * azimuths as u128;
+    if rows > MOST_ROWS {
+        return Err(Error::new(format!("these angles make {rows} rows")).help(format!(
+            "take at most {MOST_ROWS} in one table: fewer angles, or several calls"
+        )));
+    }
     let column = if delta_phi.is_some() { "delta_phi_deg," } else { "" };
     let value = if arguments.ln { "ln_brdf" } else { "brdf_per_sr" };
     let mut table = format!("theta_i_deg,theta_s_deg,{column}{value}\n");
@@ -107,7 +119,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
     }
-    deliver(table.as_bytes(), arguments.output.as_deref(), streams.output)
+    deliver(table.as_bytes(), target.as_ref(), streams.output)
 }
 
 fn material(arguments: &Arguments) -> Result<Material, Error> {
@@ -152,9 +164,8 @@ fn material(arguments: &Arguments) -> Result<Material, Error> {
         )));
     }
     if !(0.0 <= arguments.noise && arguments.noise < 1.0) {
-        return Err(
-            Error::new(format!("the noise can not be {}", arguments.noise)).help("take a number from 0 to below 1")
-        );
+        return Err(Error::new(format!("the noise cannot be {}", shortest(arguments.noise)))
+            .help("take a number from 0 to below 1"));
     }
     Ok(material)
 }
@@ -173,7 +184,7 @@ fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Re
     // Below this the exponential is no normal number.
     const LEAST_LN: f64 = -708.0;
     let [angle_i, angle_s, phi] = degrees;
-    let at = format!("theta_i = {angle_i}, theta_s = {angle_s}");
+    let at = format!("theta_i = {}, theta_s = {}", shortest(angle_i), shortest(angle_s));
     let (theta_i, theta_s, delta_phi) = (angle_i.to_radians(), angle_s.to_radians(), azimuth(phi));
     Geometry::new(theta_i, theta_s, delta_phi).map_err(|error| {
         Error::new(format!("{error} at {at} degrees")).help("take 0 <= theta_i < 90 and -90 < theta_s < 90")
@@ -191,7 +202,8 @@ fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Re
     }
     if ln_f.is_nan() || ln_f <= LEAST_LN {
         return Err(Error::new(format!(
-            "the BRDF at {at} degrees is too small for a number (ln f = {ln_f})"
+            "the BRDF at {at} degrees is too small for a number (ln f = {})",
+            shortest(ln_f)
         ))
         .help("use --ln, or give a diffuse term"));
     }
@@ -200,7 +212,7 @@ fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Re
 
 /// The angles of a list whose members are numbers or `start:stop:step`; a step too far never adds up, for each angle is `start + index * step`.
 fn angles(name: &str, list: &str) -> Result<Vec<f64>, Error> {
-    const MOST: f64 = 1e6;
+    const MOST: usize = 1_000_000;
     let fail = |what: String| {
         Err(Error::new(format!("--{name}: {what}")).help("write a,b,c or start:stop:step, such as -85:85:1"))
     };
@@ -217,7 +229,7 @@ fn angles(name: &str, list: &str) -> Result<Vec<f64>, Error> {
             [angle] => angles.push(angle),
             [start, stop, step] => {
                 let steps = (stop - start) / step;
-                if !(0.0..=MOST).contains(&steps) {
+                if !(0.0..=MOST as f64).contains(&steps) {
                     return fail(format!("'{}' does not lead from start to stop", shown(member)));
                 }
                 // Rounding must neither lose the last angle nor pass it.
@@ -228,6 +240,9 @@ fn angles(name: &str, list: &str) -> Result<Vec<f64>, Error> {
                 }));
             }
             _ => return fail(format!("'{}' is neither a number nor start:stop:step", shown(member))),
+        }
+        if angles.len() > MOST {
+            return fail(format!("these are more than {MOST} angles"));
         }
     }
     Ok(angles)
@@ -245,7 +260,18 @@ mod tests {
         assert_eq!(angles("x", "5,10:30:10,80").unwrap(), [5.0, 10.0, 20.0, 30.0, 80.0]);
         assert_eq!(angles("x", "0:0.3:0.1").unwrap().last(), Some(&0.3));
         assert_eq!(angles("x", "3:1:-1").unwrap(), [3.0, 2.0, 1.0]);
-        for bad in ["", "a", "1:2", "1:2:0", "1:2:-1", "1:2:1e-9", "1:1:0", "nan", "1:2:3:4"] {
+        for bad in [
+            "",
+            "a",
+            "1:2",
+            "1:2:0",
+            "1:2:-1",
+            "1:2:1e-9",
+            "0:1:1e-6,0:1:1e-6",
+            "1:1:0",
+            "nan",
+            "1:2:3:4",
+        ] {
             assert!(angles("x", bad).is_err(), "{bad}");
         }
     }

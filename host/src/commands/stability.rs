@@ -11,7 +11,7 @@ use crate::analysis::stability::built_in;
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver, json};
 use crate::parameters::model;
 use crate::streams::Streams;
 use crate::terms::terms;
@@ -40,6 +40,7 @@ pub struct Arguments {
 /// # Errors
 /// The scan can not be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {
         None => {
             let cases = built_in();
@@ -63,10 +64,5 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
     };
-    arguments.output.deliver(&text, streams.output)
-}
-
-fn json(value: &impl serde::Serialize) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }

@@ -6,6 +6,7 @@ use brdfit_core::real::Real;
 use serde_json::{Value, json};
 
 use super::model::{Model, word};
+use crate::output;
 
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
@@ -67,8 +68,7 @@ pub fn write(model: &Model) -> String {
             "BRDF": column("sr^-1", 3),
         },
     });
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(&file).unwrap_or_default() + "\n"
+    output::json(&file)
 }
 
 /// Now, in UTC as ISO 8601.

@@ -11,6 +11,7 @@ use crate::input::left_out;
 use crate::names;
 use crate::number::{digits, percent, short};
 use crate::output::shortest;
+use crate::plain::plain;
 use crate::result::words::{self, shown};
 use crate::terms::term_names;
 
@@ -255,7 +256,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (report.file) ", " (section.source.bytes) " bytes" } }
+                tr { th.text { "input" } td.text { (plain(&report.file)) ", " (section.source.bytes) " bytes" } }
                 tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }

@@ -7,6 +7,8 @@ use serde_json::{Map, Value};
 
 use crate::engine::{Material, Model, Values};
 use crate::error::Error;
+use crate::output::shortest;
+use crate::plain::of_cell;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,8 +80,8 @@ fn csv(text: &str) -> Option<Vec<Fitted>> {
             None => Err(cell("error")?.to_string()),
         };
         all.push(Fitted {
-            file: row.get(file)?.into(),
-            scan: Some(row.get(scan)?.to_string()).filter(|scan| !scan.is_empty()),
+            file: of_cell(row.get(file)?).into(),
+            scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             material,
         });
     }
@@ -114,11 +116,13 @@ pub fn agree(label: &str, found: &Material, stored: &Material) -> Result<(), Err
     let pairs = found.model.named(&found.values).zip(stored.values.iter());
     for ((name, found), stored) in pairs {
         if found != *stored {
-            return Err(
-                Error::new(format!("{name} is {found} now, and {stored} in the results"))
-                    .in_file(label)
-                    .help(help),
-            );
+            return Err(Error::new(format!(
+                "{name} is {} now, and {} in the results",
+                shortest(found),
+                shortest(*stored)
+            ))
+            .in_file(label)
+            .help(help));
         }
     }
     Ok(())

@@ -3,7 +3,7 @@
 use crate::analysis::fit::FittedScan;
 use crate::engine::Values;
 use crate::names;
-use crate::output::shortest;
+use crate::output::{shortest, write_row};
 use crate::terms::term_names;
 
 /// One row a scan, or with `minima` one row a distinct minimum.
@@ -22,7 +22,7 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
     let timed = !minima && reports.iter().any(|report| report.elapsed.is_some());
     head.extend(timed.then_some("elapsed_s"));
     // Writing to memory does not fail.
-    let _ = writer.write_record(&head);
+    let _ = write_row(&mut writer, &head);
     for report in reports {
         let outcome = &report.outcome;
         let row = |mse2: f64, params: &Values| {
@@ -49,7 +49,7 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                 let mut row = row(minimum.mse2, &minimum.params);
                 let counts = [place as u64 + 1, u64::from(minimum.hits), minimum.first_start];
                 row.extend(counts.map(|count| count.to_string()));
-                let _ = writer.write_record(&row);
+                let _ = write_row(&mut writer, &row);
             }
         } else {
             let mut row = row(outcome.mse2, &outcome.params);
@@ -68,7 +68,7 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                         .map_or(String::new(), |elapsed| shortest(elapsed.as_secs_f64())),
                 );
             }
-            let _ = writer.write_record(&row);
+            let _ = write_row(&mut writer, &row);
         }
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()

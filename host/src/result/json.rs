@@ -10,6 +10,7 @@ use crate::analysis::fit::FittedScan;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::names;
+use crate::output;
 use crate::terms::term_names;
 pub use by_name::ByName;
 use choice::{Selection, selection};
@@ -102,10 +103,8 @@ fn json_report(report: &FittedScan) -> JsonReport<'_> {
 /// One object for one scan, an array for several.
 pub fn json(reports: &[FittedScan]) -> String {
     let objects: Vec<_> = reports.iter().map(json_report).collect();
-    let written = match objects.as_slice() {
-        [one] => serde_json::to_string_pretty(one),
-        several => serde_json::to_string_pretty(several),
-    };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    written.unwrap_or_default() + "\n"
+    match objects.as_slice() {
+        [one] => output::json(one),
+        several => output::json(&several),
+    }
 }

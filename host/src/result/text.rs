@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 use crate::analysis::fit::{AngleOfIncidence, FittedScan};
 use crate::engine::{Minimum, Outcome};
-use crate::input::left_out;
+use crate::input::{label, left_out};
 use crate::names;
 use crate::number::digits;
 use crate::terms::term_names;
@@ -22,10 +22,7 @@ fn page(report: &FittedScan, minima: bool) -> String {
     let (outcome, options) = (&report.outcome, &report.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(match &report.scan {
-        Some(scan) => format!("{} [{scan}]", report.file),
-        None => report.file.clone(),
-    });
+    line(label(&report.file, report.scan.as_deref()));
     line(format!("  read as    {}", report.read_as));
     line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
     if let Some(summary) = left_out::summary(&report.left_out) {

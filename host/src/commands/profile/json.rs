@@ -7,6 +7,7 @@ use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{Interval, Profile};
 use crate::engine::Outcome;
+use crate::output;
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -91,8 +92,7 @@ pub fn write(findings: &Findings) -> String {
                 .collect(),
         }),
     };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+    output::json(&document)
 }
 
 fn parameter(profile: &Profile, outcome: &Outcome) -> Parameter {

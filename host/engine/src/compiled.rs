@@ -15,16 +15,22 @@ use crate::simd::{FastScan, Simd};
 use crate::trace::{self, Trace};
 use crate::{FitError, FitOptions, Outcome, Values, joint, search};
 
+/// A cost and the parameters where it is.
+type Found = Option<(f64, Values)>;
+/// A joint fit, or the place of the scan that cannot be fitted, and why.
+type Joint = Result<joint::Fitted, (usize, FitError)>;
+
 /// The computations of one model, or of one set of its terms.
+#[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]
 #[derive(Clone, Copy, Debug)]
 pub struct Compiled {
     pub(crate) terms: u8,
     pub(crate) fit: fn(&[Sample<f64>], &FitOptions) -> Result<Outcome, FitError>,
-    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Option<(f64, Values)>, FitError>,
+    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Found, FitError>,
     pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
-    pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Result<joint::Fitted, (usize, FitError)>,
+    pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Joint,
     pub(crate) ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
-    pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Option<(f64, Values)>,
+    pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Found,
 }
 
 /// A scan of some model, as a search sees it.
@@ -112,7 +118,7 @@ fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
     starts: &[Values],
-) -> Result<Option<(f64, Values)>, FitError> {
+) -> Result<Found, FitError> {
     let blocks = blocks_of::<f64, M, P, C>(samples)?;
     let scene = scene::<f64, M, P, C, VECTORS>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
@@ -141,7 +147,7 @@ fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     all: &[&[Sample<f64>]],
     shared: &[bool],
     options: &FitOptions,
-) -> Result<joint::Fitted, (usize, FitError)> {
+) -> Joint {
     let each = all.iter().enumerate();
     let each = each.map(|(place, samples)| blocks_of::<f64, M, P, C>(samples).map_err(|error| (place, error)));
     let blocks: Vec<_> = each.collect::<Result<_, _>>()?;
@@ -160,10 +166,7 @@ fn value<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: 
     Some(brdfit_core::residuals::value::<f64, M, P, C>(&x, geometry))
 }
 
-fn gradient<M: Both<P, C>, const P: usize, const C: usize>(
-    values: &[f64],
-    sample: &Sample<f64>,
-) -> Option<(f64, Values)> {
+fn gradient<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: &Sample<f64>) -> Found {
     let geometry = <M as Model<f64, P, C>>::geometry(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
     let x = Residuals::<f64, M, P, C>::from_values(values.try_into().ok()?);
     let (value, gradient) = ln_f::<f64, M, P, C>(&x, geometry);

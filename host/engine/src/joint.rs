@@ -110,7 +110,7 @@ fn together<const P: usize, const Q: usize>(
         let free = bounds.lower[place] < value && value < bounds.upper[place];
         let error = uncertainty.held.standard_error(place);
         let slope = layout.slopes(&problem.of(&best.x, s))[k];
-        (free && error.is_finite()).then(|| error * slope)
+        (free && error.is_finite()).then_some(error * slope)
     };
     let errors = |s: usize| {
         let places = 0..options.model.parameters.len();

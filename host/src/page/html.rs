@@ -271,7 +271,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 @for (cell, column) in numbers { tr {
                     th.text { code { (column.name) } }
-                    td.text { code { (cell.text()) } @if !matches!(column.unit, "" | "1") { " " (column.unit) } ", " (column.about) }
+                    td.text { code { (plain(&cell.text())) } @if !matches!(column.unit, "" | "1") { " " (column.unit) } ", " (column.about) }
                 } }
             }
         }

@@ -19,7 +19,7 @@ mod waterfall;
 
 pub use albedo::albedo_svg;
 pub use converge::converge_svg;
-pub use curve::{LnF, eq_14};
+pub use curve::{LnF, of};
 pub use drawn::Drawn;
 pub use marks::Data;
 pub use overlay::{Overlay, overlay_svg};

@@ -103,16 +103,12 @@ pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome
 /// Are the values a reflectance factor, or not calibrated? rho_d is on 1 and more light comes back than went in.
 fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Option<Hint> {
     let brightest = derived.iter().map(|at| at.reflectance.value).fold(0.0, f64::max);
-    let on_bound = outcome.at_bound.contains(&"rho_d")
-        && outcome.params.rho_d >= options.upper.rho_d
-        && options.upper.rho_d >= 1.0;
-    if !on_bound || !(brightest > 1.0) {
+    let place = outcome.model.place("rho_d")?;
+    let (rho_d, upper) = (outcome.params[place], options.upper[place]);
+    if !(outcome.at_bound.contains(&"rho_d") && rho_d >= upper && upper >= 1.0 && brightest > 1.0) {
         return None;
     }
-    let begin = format!(
-        "rho_d is on its bound of {} and the reflectance is {brightest:.2}",
-        options.upper.rho_d
-    );
+    let begin = format!("rho_d is on its bound of {upper} and the reflectance is {brightest:.2}");
     let least = measurement
         .samples
         .iter()

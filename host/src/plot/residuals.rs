@@ -2,15 +2,13 @@
 
 use std::fmt::Write;
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
-use brdfit_core::real::Real;
+use brdfit_core::geometry::Sample;
 
 use super::axis::Axis;
 use super::frame::{BOTTOM, CAPTION, Grid, LEFT, RIGHT, WIDTH, frame};
 use super::marks::{Data, Marks, Panel, thinned};
 use super::svg;
-use crate::engine::ln_f;
+use crate::engine::Material;
 
 const TOP: f64 = 10.0;
 
@@ -18,14 +16,14 @@ const TOP: f64 = 10.0;
 ///
 /// `scale` is the standard deviation of a residual: the bands are one and two of them wide on each side.
 /// All panels share the vertical range; of very many angles and samples only some are drawn, as in [`super::scan_svg`].
-pub fn residuals_svg(samples: &[Sample<f64>], params: &Params<f64>, scale: f64) -> String {
+pub fn residuals_svg(samples: &[Sample<f64>], material: &Material, scale: f64) -> String {
     let marks = Marks::of(&Data {
         samples,
         left_out: &[],
         left_out_count: 0,
     });
     let band = if scale.is_finite() { 2.2 * scale } else { 0.0 };
-    let residuals = samples.iter().filter_map(|sample| residual(sample, params));
+    let residuals = samples.iter().filter_map(|sample| material.residual(sample));
     let far = residuals.map(f64::abs).fold(band, f64::max);
     let mut body = String::new();
     let mut bottom = TOP;
@@ -49,7 +47,7 @@ pub fn residuals_svg(samples: &[Sample<f64>], params: &Params<f64>, scale: f64) 
             );
             let each = panel.samples().iter().zip(&panel.measured);
             let points =
-                each.filter_map(|(sample, point)| Some((x.pixel(point.0), y.pixel(residual(sample, params)?))));
+                each.filter_map(|(sample, point)| Some((x.pixel(point.0), y.pixel(material.residual(sample)?))));
             svg::dots(&mut body, thinned(points.collect(), block.limit()).into_iter());
             body.push_str("</g></g>");
         }
@@ -84,10 +82,4 @@ fn bands(out: &mut String, y: &Axis, width: f64, scale: f64) {
             );
         }
     }
-}
-
-/// The residual; none beyond the horizon.
-fn residual(sample: &Sample<f64>, params: &Params<f64>) -> Option<f64> {
-    let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-    Some(sample.weight * (ln_f(params, &geometry) - Real::ln(sample.brdf)))
 }

@@ -84,16 +84,6 @@ pub fn write_row(writer: &mut csv::Writer<impl Write>, row: &[impl AsRef<str>]) 
     writer.write_record(row.iter().map(|text| plain::cell(text.as_ref()).into_owned()))
 }
 
-/// The shortest decimal form that reads back as the same number.
-pub fn shortest(x: f64) -> String {
-    let size = x.abs();
-    if x == 0.0 || (1e-5..1e16).contains(&size) {
-        format!("{x}")
-    } else {
-        format!("{x:e}")
-    }
-}
-
 /// Where a result goes: a file that may be written, or standard output for none or `-`.
 ///
 /// # Errors
@@ -129,19 +119,5 @@ pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> i
             .downcast::<Error>()
             .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}")))),
         _ => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_read_back() {
-        for x in [0.0, 45.0, -85.5, 0.1, 1e-33, 2.5e300, 1.0 / 3.0, f64::MIN_POSITIVE] {
-            assert_eq!(shortest(x).parse::<f64>().unwrap(), x);
-        }
-        assert_eq!(shortest(45.0), "45");
-        assert_eq!(shortest(1e-33), "1e-33");
     }
 }

@@ -3,7 +3,7 @@
 use brdfit_core::brdf::{NAMES, Params, has};
 
 use crate::error::{Error, shown};
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::terms::term_names;
 
 /// What the parameters of [`NAMES`] mean.

@@ -2,7 +2,7 @@
 
 use brdfit::input::azimuth;
 use brdfit::input::weight::{self, Source};
-use brdfit::output::shortest;
+use brdfit::number::shortest;
 use brdfit_core::geometry::{Observation, Sample};
 use numpy::PyReadonlyArray2;
 use numpy::ndarray::ArrayView2;

@@ -8,7 +8,8 @@ use serde_json::json;
 use crate::engine::models::{Fitted, MODELS, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::number::four;
+use crate::output::{self, Format, OutputArguments, deliver};
 use crate::plot::{self, picture};
 use crate::streams::Streams;
 
@@ -93,9 +94,7 @@ fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     ];
     for fit in fits {
         let values = fit.parameters.iter();
-        let values: Vec<_> = values
-            .map(|(name, value)| format!("{name} {}", short(*value)))
-            .collect();
+        let values: Vec<_> = values.map(|(name, value)| format!("{name} {}", four(*value))).collect();
         let mark = if fit.aicc() == least { '*' } else { ' ' };
         lines.push(format!(
             "{mark} {:<19} {:>2} {:>12.4e} {:>7.4} {:>7.1} {:>7}  {}",
@@ -110,12 +109,6 @@ fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     }
     lines.push("  AICc is above the least, which * has; a difference of 10 leaves no doubt.".to_string());
     lines.join("\n") + "\n"
-}
-
-/// Four digits.
-fn short(value: f64) -> String {
-    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
-    shortest(rounded)
 }
 
 fn json(measurement: &Measurement, fits: &[Fitted]) -> String {

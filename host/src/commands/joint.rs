@@ -10,7 +10,8 @@ use serde_json::{Map, Value, json};
 
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::number::{four, two};
+use crate::output::{self, Format, OutputArguments, deliver};
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -74,8 +75,8 @@ fn shared(list: &str) -> Result<[bool; 6], Error> {
 fn text(measurements: &[Measurement], fitted: &Fitted) -> String {
     let names: Vec<&str> = (0..6).filter(|&k| fitted.shared[k]).map(|k| NAMES[k]).collect();
     let value = |(value, error): (f64, Option<f64>)| match error {
-        Some(error) => format!("{} ± {}", digits(value, 4), digits(error, 2)),
-        None => digits(value, 4),
+        Some(error) => format!("{} ± {}", four(value), two(error)),
+        None => four(value),
     };
     let mut lines = vec![format!(
         "{} scans, {} samples, {} parameters; shared: {}",
@@ -100,11 +101,6 @@ fn text(measurements: &[Measurement], fitted: &Fitted) -> String {
     ));
     lines.push("  ± is one standard error; none where a parameter is on a bound or undetermined.".to_string());
     lines.join("\n") + "\n"
-}
-
-fn digits(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    shortest(rounded)
 }
 
 fn json(measurements: &[Measurement], fitted: &Fitted) -> String {

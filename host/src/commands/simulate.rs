@@ -11,7 +11,8 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use crate::error::{Error, shown};
 use crate::input::azimuth;
-use crate::output::{deliver, shortest, target};
+use crate::number::shortest;
+use crate::output::{deliver, target};
 use crate::streams::Streams;
 use crate::target::NO_INPUTS;
 use crate::{engine, parameters};

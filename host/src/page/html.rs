@@ -9,8 +9,7 @@ use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::input::left_out;
 use crate::names;
-use crate::number::{digits, percent, short};
-use crate::output::shortest;
+use crate::number::{self, percent, shortest, two};
 use crate::parameters::MEANINGS;
 use crate::plain::plain;
 use crate::result::columns::{Json, of_fits};
@@ -141,7 +140,7 @@ fn parameters(section: &Section) -> Markup {
                             td.text { (symbol(NAMES[index])) }
                             td.text { (MEANINGS[index]) }
                             td { (number(value)) }
-                            td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (short(known.stderr[index])) } @else { "–" } }
+                            td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (two(known.stderr[index])) } @else { "–" } }
                             td { (shortest(lower[index])) " – " (shortest(upper[index])) }
                             td.text { (remark(section, index)) }
                         }
@@ -150,7 +149,7 @@ fn parameters(section: &Section) -> Markup {
             }
         }
         @let strong = correlated(section);
-        @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (short(known.condition)) "." } }
+        @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (two(known.condition)) "." } }
     }
 }
 
@@ -293,14 +292,8 @@ fn symbol(name: &str) -> Markup {
 
 /// Five significant digits, with a power of ten where that is shorter.
 fn number(value: f64) -> Markup {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    let text = digits(rounded);
-    html! {
-        @match text.split_once('e') {
-            Some((mantissa, exponent)) => { (minus(mantissa)) " × 10" sup { (minus(exponent)) } },
-            None => { (minus(&text)) },
-        }
-    }
+    let (mantissa, exponent) = number::set(&number::significant(value, 5));
+    html! { (mantissa) @if let Some(exponent) = exponent { " × 10" sup { (exponent) } } }
 }
 
 fn minus(text: &str) -> String {

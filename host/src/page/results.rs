@@ -7,7 +7,7 @@ use brdfit_core::brdf::{NAMES, Params};
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::plain::of_cell;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.

@@ -70,7 +70,7 @@ impl Axis {
         let step = step.unwrap_or(10.0 * power);
         let ticks = steps(low, high, step).map(|at| Tick {
             at,
-            label: Some(svg::number(at).replace('-', "−")),
+            label: Some(svg::number(at)),
         });
         Axis {
             low,

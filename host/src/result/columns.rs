@@ -10,7 +10,7 @@ use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
 use crate::engine::{FitOptions, Minimum, Outcome};
 use crate::names;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::parameters::MEANINGS;
 use crate::terms::term_names;
 

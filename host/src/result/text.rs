@@ -11,7 +11,7 @@ use crate::analysis::fit::{AngleOfIncidence, FittedScan};
 use crate::engine::Minimum;
 use crate::input::{label, left_out};
 use crate::names;
-use crate::number::digits;
+use crate::number::six;
 use crate::terms::term_names;
 
 /// A page for people.
@@ -47,23 +47,23 @@ fn page(report: &FittedScan, minima: bool) -> String {
     for (index, value) in outcome.params.to_array().into_iter().enumerate() {
         if has(options.terms, index) {
             let remark = uncertainty::remark(index, &outcome.uncertainty);
-            line(format!("    {:<8} {:>13}{remark}", NAMES[index], digits(value)));
+            line(format!("    {:<8} {:>13}{remark}", NAMES[index], six(value)));
         }
     }
-    line(format!("  MSE^2      {}", digits(outcome.mse2)));
+    line(format!("  MSE^2      {}", six(outcome.mse2)));
     line(format!(
         "  rms ln f   {} ({:.2} %)",
-        digits(outcome.rms_ln),
+        six(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
     if let Some(chi2) = report.chi2 {
         let degrees = outcome.uncertainty.degrees_of_freedom;
-        line(format!("  chi^2      {} of {degrees} degrees of freedom", digits(chi2)));
+        line(format!("  chi^2      {} of {degrees} degrees of freedom", six(chi2)));
     }
     if let Some(robust) = &outcome.robust {
         line(format!(
             "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",
-            digits(robust.scale)
+            six(robust.scale)
         ));
     }
     line(format!(
@@ -99,7 +99,7 @@ fn page(report: &FittedScan, minima: bool) -> String {
 /// The angles of incidence, with their rms where there are several.
 fn angles(angles: &[AngleOfIncidence]) -> String {
     const LISTED: usize = 12;
-    let degrees = |angle: &AngleOfIncidence| digits(angle.theta_i.to_degrees());
+    let degrees = |angle: &AngleOfIncidence| six(angle.theta_i.to_degrees());
     match angles {
         [] => String::new(),
         [one] => format!(" at theta_i = {} deg", degrees(one)),
@@ -115,7 +115,7 @@ fn angles(angles: &[AngleOfIncidence]) -> String {
                 "\n    theta_i {:>8} deg: {:>4} samples, rms ln f {}",
                 degrees(angle),
                 angle.samples,
-                digits(angle.rms_ln)
+                six(angle.rms_ln)
             );
             list
         }),
@@ -129,9 +129,9 @@ fn minima_table(minima: &[Minimum]) -> String {
     }
     table += "  hits  first start\n";
     for (place, minimum) in minima.iter().enumerate() {
-        let _ = write!(table, "  {:>3} {:>12}", place + 1, digits(minimum.mse2));
+        let _ = write!(table, "  {:>3} {:>12}", place + 1, six(minimum.mse2));
         for value in minimum.params.to_array() {
-            let _ = write!(table, " {:>12}", digits(value));
+            let _ = write!(table, " {:>12}", six(value));
         }
         let _ = writeln!(table, " {:>5} {:>12}", minimum.hits, minimum.first_start);
     }

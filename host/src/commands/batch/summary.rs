@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::record::{Line, Record};
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::streams::{Ended, Streams};
 
 /// Lines that are printed; means are over all.

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
-use crate::output::{self, shortest, write_row};
+use crate::number::shortest;
+use crate::output::{self, write_row};
 
 #[derive(Serialize)]
 struct Document<'a> {

@@ -121,7 +121,14 @@ pub fn bounds(text: &str) -> Result<Range, Error> {
 /// # Errors
 /// Another form, an unknown name, or a value outside [`crate::parameters::domain`].
 pub fn fixed(text: &str) -> Result<Range, Error> {
-    let form = || Error::new(format!("'{}' fixes nothing", shown(text))).help("write --fix NAME=VALUE");
+    assigned(text, "--fix")
+}
+
+/// The same for a member of the list of another option.
+fn assigned(text: &str, option: &str) -> Result<Range, Error> {
+    let form = || {
+        Error::new(format!("'{}' gives no parameter a value", shown(text))).help(format!("write {option} NAME=VALUE"))
+    };
     let (name, value) = text.split_once('=').ok_or_else(form)?;
     let index = parameter(name)?;
     let value = number(value)?;
@@ -140,10 +147,7 @@ pub fn fixed(text: &str) -> Result<Range, Error> {
 pub fn all_parameters(list: &str, option: &str) -> Result<Params<f64>, Error> {
     let mut values = [None; NAMES.len()];
     for member in list.split(',') {
-        let one = fixed(member).map_err(|error| match error.help {
-            Some(help) => Error::new(error.what).help(help.replace("--fix", option)),
-            None => error,
-        })?;
+        let one = assigned(member, option)?;
         if values[one.index].replace(one.lower).is_some() {
             return Err(Error::new(format!("{option} gives {} twice", NAMES[one.index])).help("give it once"));
         }

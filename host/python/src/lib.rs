@@ -209,7 +209,7 @@ fn brdf<'py>(
             return Ok(f64::NAN);
         }
         for (k, value) in x.into_iter().enumerate() {
-            check(k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
+            check(k, value).map_err(|error| error.message())?;
         }
         let ln_f = engine::ln_f(&Params::from_array(x), &geometry);
         // Below this the exponential is no normal number.

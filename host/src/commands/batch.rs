@@ -81,13 +81,14 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
         None => output::target(Some(out), &files)?,
     };
+    let models = vec![options.model];
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
         options: asked_for(options, arguments),
         files: files.len(),
         names: record::names(&files),
         rows: form.rows(),
-        columns: run::columns(),
+        columns: run::columns(&models),
         shard,
     };
     let scratch = to_stdout.then(tempfile::tempdir).transpose().map_err(|error| {
@@ -119,6 +120,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let job = run::Job {
         files: &files,
         options,
+        models,
         read: &arguments.read,
         rows: head.rows,
         interrupt,

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::{FitOptions, Method};
+use crate::engine::{FitOptions, Material, Method};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::interrupt;
@@ -93,7 +93,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         TableFormat::Csv => result::csv(&reports, arguments.minima),
     };
     if let (Some(picture), [measurement], [report]) = (&picture, &measurements[..], &reports[..]) {
-        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+        let material = |values| Material {
+            values,
+            ..report.outcome.material()
+        };
+        let minima = report.outcome.minima.iter();
+        let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             picture,
             &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),

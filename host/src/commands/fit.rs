@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
-    /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
+    /// Draws the scan with its distinct minima, as SVG, or as PNG if brdfit is built with it; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]

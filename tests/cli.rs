@@ -85,7 +85,7 @@ fn each_error_of_a_file_names_its_place() {
             "few",
             format!("{HEAD}45,11,0.1\n").into(),
             "",
-            "2 samples can not determine 6 parameters",
+            "2 samples cannot determine 6 parameters",
         ),
         ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), "", "a PNG picture"),
         (

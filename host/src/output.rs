@@ -76,7 +76,7 @@ pub fn json(value: &impl Serialize) -> String {
     plain::json(&written).into_owned() + "\n"
 }
 
-/// Writes a row of a table whose cells show all that is in them, and are no formulas.
+/// Writes a row of a table whose cells show all that is in them, and are not formulas.
 ///
 /// # Errors
 /// The stream breaks.
@@ -100,7 +100,7 @@ pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option
 /// Writes to a file, or to the stream if there is none.
 ///
 /// # Errors
-/// As [`Target::write`], and if the stream breaks; a reader that wants no more, such as `head`, is no error.
+/// As [`Target::write`], and if the stream breaks; a reader that closes early, such as `head`, is not an error.
 pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write) -> Result<(), Error> {
     match target {
         Some(target) => target.write(contents),
@@ -111,7 +111,7 @@ pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write)
 /// Writes to standard output.
 ///
 /// # Errors
-/// The stream breaks, or what `write` fails with; a reader that wants no more, such as `head`, is no error.
+/// The stream breaks, or what `write` fails with; a reader that closes early, such as `head`, is not an error.
 pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
     interrupt::await_reader(false);
     match write(stream).and_then(|()| stream.flush()) {

@@ -20,7 +20,7 @@ pub struct Model {
     pub source: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
-    /// The terms that can be left out of it; 0 if it is no microfacet model.
+    /// The terms that can be left out of it; 0 if it is not a microfacet model.
     pub terms: u8,
     pub(crate) whole: Whole,
     /// Sets of its terms that are compiled on their own.

@@ -38,7 +38,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown parameter, too few or too many scans, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
     let shared = shared(options.model, &arguments.share)?;
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
-            Error::new(format!("{} scans can not be fitted together", measurements.len()))
+            Error::new(format!("{} scans cannot be fitted together", measurements.len()))
                 .help(format!("give 2 to {SCANS} scans")),
         );
     }

@@ -121,7 +121,7 @@ fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Erro
         index.ok_or_else(|| {
             let terms = term_names(options.terms).join(",");
             Error::new(format!(
-                "'{}' is no free parameter of the terms {terms}",
+                "'{}' is not a free parameter of the terms {terms}",
                 crate::error::shown(asked)
             ))
             .help(format!("the free parameters are {}", known()))

@@ -21,7 +21,7 @@ pub struct Section {
     /// Its file.
     pub source: Source,
     /// The fit.
-    pub report: FittedScan,
+    pub fit: FittedScan,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
     pub survey: Outcome,
     /// The number of its starts.
@@ -38,24 +38,34 @@ pub struct Figure {
     pub svg: String,
     /// What stands below it.
     pub caption: &'static str,
+    /// The table that shows the same in numbers.
+    pub table: Option<Table>,
+}
+
+/// A table beside a figure.
+pub enum Table {
+    /// The distinct minima.
+    Minima,
+    /// What is derived at each angle of incidence.
+    Angles,
 }
 
 impl Section {
     /// Fits a scan by `options`, and by the paper's method if that is another.
     ///
     /// # Errors
-    /// The scan can not be fitted.
+    /// The scan cannot be fitted.
     pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
-        let report = fit(measurement, options)?;
-        let samples = robust::kept(&measurement.samples, &report.outcome);
+        let fit = fit(measurement, options)?;
+        let samples = robust::kept(&measurement.samples, &fit.outcome);
         let paper = FitOptions {
             method: Method::Paper,
             starts: None,
             robust: false,
-            ..report.options
+            ..fit.options
         };
-        let (survey, starts) = if report.options.method == Method::Paper {
-            (report.outcome.clone(), report.options.starts())
+        let (survey, starts) = if fit.options.method == Method::Paper {
+            (fit.outcome.clone(), fit.options.starts())
         } else {
             let survey = engine::fit(&samples, &paper);
             (
@@ -66,8 +76,8 @@ impl Section {
         Ok(Section {
             label: measurement.label(),
             source: source.clone(),
-            figures: figures(&samples, &report, &survey.minima, starts),
-            report,
+            figures: figures(&samples, &fit, &survey.minima, starts),
+            fit,
             survey,
             starts,
         })
@@ -76,12 +86,12 @@ impl Section {
     /// Do the starts of the survey end lower than the fit, by more than rounding?
     pub fn missed(&self) -> bool {
         let least = self.survey.minima.first().map_or(f64::INFINITY, |minimum| minimum.mse2);
-        least < self.report.outcome.mse2 * (1.0 - 1e-6)
+        least < self.fit.outcome.mse2 * (1.0 - 1e-6)
     }
 }
 
-fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
-    let outcome = &report.outcome;
+fn figures(samples: &[Sample<f64>], fit: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
+    let outcome = &fit.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let material = outcome.material();
     let with = |values: Values| Material { values, ..material };
@@ -90,36 +100,38 @@ fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], sta
     let albedo = |theta_i: f64| derived::at(theta_i, &material, &outcome.uncertainty).reflectance;
     let angles = (0..=STEEPEST).step_by(2).map(f64::from);
     let line: Vec<(f64, Value)> = angles.map(|degrees| (degrees, albedo(degrees.to_radians()))).collect();
-    let measured = report
-        .derived
-        .iter()
-        .map(|at| (at.theta_i.to_degrees(), at.reflectance));
+    let measured = fit.derived.iter().map(|at| (at.theta_i.to_degrees(), at.reflectance));
     let measured: Vec<(f64, Value)> = measured.collect();
     vec![
         Figure {
             name: "curves",
             svg: plot::scan_svg("", samples, &curves),
             caption: "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+            table: None,
         },
         Figure {
             name: "residuals",
             svg: plot::residuals_svg(samples, &material, outcome.uncertainty.scale),
             caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
+            table: None,
         },
         Figure {
             name: "polar",
             svg: plot::polar_svg(samples, &material),
             caption: "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
+            table: None,
         },
         Figure {
             name: "starts",
             svg: plot::waterfall_svg(minima, starts),
             caption: "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
+            table: Some(Table::Minima),
         },
         Figure {
             name: "albedo",
             svg: plot::albedo_svg(&line, &measured),
             caption: "Directional-hemispherical reflectance (directional albedo) of the best fit, with one standard error; dots at the measured angles of incidence.",
+            table: Some(Table::Angles),
         },
     ]
 }

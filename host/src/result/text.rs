@@ -14,24 +14,24 @@ use crate::terms::term_names;
 
 /// A page for people.
 pub fn text(reports: &[FittedScan], minima: bool) -> String {
-    let pages: Vec<String> = reports.iter().map(|report| page(report, minima)).collect();
+    let pages: Vec<String> = reports.iter().map(|fit| page(fit, minima)).collect();
     pages.join("\n")
 }
 
-fn page(report: &FittedScan, minima: bool) -> String {
-    let (outcome, options) = (&report.outcome, &report.options);
+fn page(fit: &FittedScan, minima: bool) -> String {
+    let (outcome, options) = (&fit.outcome, &fit.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(label(&report.file, report.scan.as_deref()));
-    line(format!("  read as    {}", report.read_as));
-    for note in &report.about.notes {
+    line(label(&fit.file, fit.scan.as_deref()));
+    line(format!("  read as    {}", fit.read_as));
+    for note in &fit.about.notes {
         line(format!("  note       {note}"));
     }
-    if !report.about.unused.is_empty() {
-        line(format!("  not used   {}", report.about.unused()));
+    if !fit.about.unused.is_empty() {
+        line(format!("  not used   {}", fit.about.unused()));
     }
-    line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
-    if let Some(summary) = left_out::summary(&report.left_out) {
+    line(format!("  samples    {}{}", outcome.samples, angles(&fit.angles)));
+    if let Some(summary) = left_out::summary(&fit.left_out) {
         line(format!("  left out   {summary}"));
     }
     line(format!(
@@ -65,7 +65,7 @@ fn page(report: &FittedScan, minima: bool) -> String {
         six(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
-    if let Some(chi2) = report.chi2 {
+    if let Some(chi2) = fit.chi2 {
         let degrees = outcome.uncertainty.degrees_of_freedom;
         line(format!("  chi^2      {} of {degrees} degrees of freedom", six(chi2)));
     }
@@ -89,14 +89,14 @@ fn page(report: &FittedScan, minima: bool) -> String {
         "  passes     {} with derivatives, {} without",
         outcome.evaluations.linearize, outcome.evaluations.cost
     ));
-    if let Some(elapsed) = report.elapsed {
+    if let Some(elapsed) = fit.elapsed {
         line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
     }
-    for choice in report.choice.iter().flat_map(choice::lines) {
+    for choice in fit.choice.iter().flat_map(choice::lines) {
         line(choice);
     }
-    let weighted = report.read_as.weighted;
-    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &report.derived, weighted) {
+    let weighted = fit.read_as.weighted;
+    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &fit.derived, weighted) {
         line(known);
     }
     if minima {

@@ -78,7 +78,7 @@ pub fn text(scans: &[ScanStudy], seeds: u32) -> String {
         if place > 0 {
             out.push('\n');
         }
-        // Writing to a String can not fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             out,
             "{}: {} samples, least MSE^2 {:.6e}; medians of {seeds} {}, one thread, fastest of {REPEATS} runs",

@@ -254,7 +254,7 @@ fn a_flipped_digit_is_found_and_fitted_again() {
     );
     let again = brdfit(&[&shard[..], &["--resume"]].concat());
     assert_eq!(again.code, 0);
-    assert!(again.errors.contains(":4: this is no whole record"), "{}", again.errors);
+    assert!(again.errors.contains(":4: this record is not whole"), "{}", again.errors);
     assert_eq!(fs::read_to_string(&path).unwrap(), part);
     assert_eq!(brdfit(&["merge", "--out", text(&out)]).code, 0);
     assert_eq!(fs::read_to_string(&out).unwrap(), whole);
@@ -264,7 +264,7 @@ fn a_flipped_digit_is_found_and_fitted_again() {
     let resumed = brdfit(&["batch", text(&folder), "--out", text(&out), "--resume"]);
     assert_eq!(resumed.code, 0);
     assert!(
-        resumed.errors.contains(":4: this is no whole record"),
+        resumed.errors.contains(":4: this record is not whole"),
         "{}",
         resumed.errors
     );

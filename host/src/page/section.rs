@@ -3,13 +3,13 @@
 use brdfit_core::geometry::Sample;
 
 use super::provenance::Source;
-use crate::analysis::derived::{self, Value};
+use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
 use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, Measurement};
-use crate::plot;
+use crate::plot::{self, Albedo, Met};
 
 /// The albedo is drawn up to this angle of incidence, degrees, in steps of two.
 const STEEPEST: u32 = 88;
@@ -97,11 +97,21 @@ fn figures(samples: &[Sample<f64>], fit: &FittedScan, minima: &[Minimum], starts
     let with = |values: Values| Material { values, ..material };
     let others = minima.iter().filter(other).map(|minimum| with(minimum.params));
     let curves: Vec<Material> = std::iter::once(material).chain(others).collect();
-    let albedo = |theta_i: f64| derived::at(theta_i, &material, &outcome.uncertainty).reflectance;
-    let angles = (0..=STEEPEST).step_by(2).map(f64::from);
-    let line: Vec<(f64, Value)> = angles.map(|degrees| (degrees, albedo(degrees.to_radians()))).collect();
-    let measured = fit.derived.iter().map(|at| (at.theta_i.to_degrees(), at.reflectance));
-    let measured: Vec<(f64, Value)> = measured.collect();
+    let albedo = |at: &Derived| Albedo {
+        theta_i: at.theta_i.to_degrees(),
+        value: at.reflectance.value,
+        stderr: at.reflectance.stderr,
+    };
+    let angles = (0..=STEEPEST).step_by(2).map(|degrees| f64::from(degrees).to_radians());
+    let line: Vec<Albedo> = angles
+        .map(|theta_i| albedo(&derived::at(theta_i, &material, &outcome.uncertainty)))
+        .collect();
+    let measured: Vec<Albedo> = fit.derived.iter().map(albedo).collect();
+    let met = |minimum: &Minimum| Met {
+        mse2: minimum.mse2,
+        hits: minimum.hits,
+        first_start: minimum.first_start,
+    };
     vec![
         Figure {
             name: "curves",
@@ -123,7 +133,7 @@ fn figures(samples: &[Sample<f64>], fit: &FittedScan, minima: &[Minimum], starts
         },
         Figure {
             name: "starts",
-            svg: plot::waterfall_svg(minima, starts),
+            svg: plot::waterfall_svg(&minima.iter().map(met).collect::<Vec<_>>(), starts),
             caption: "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
             table: Some(Table::Minima),
         },

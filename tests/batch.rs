@@ -254,7 +254,11 @@ fn a_flipped_digit_is_found_and_fitted_again() {
     );
     let again = brdfit(&[&shard[..], &["--resume"]].concat());
     assert_eq!(again.code, 0);
-    assert!(again.errors.contains(":4: this record is not whole"), "{}", again.errors);
+    assert!(
+        again.errors.contains(":4: this record is not whole"),
+        "{}",
+        again.errors
+    );
     assert_eq!(fs::read_to_string(&path).unwrap(), part);
     assert_eq!(brdfit(&["merge", "--out", text(&out)]).code, 0);
     assert_eq!(fs::read_to_string(&out).unwrap(), whole);

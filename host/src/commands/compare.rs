@@ -154,5 +154,5 @@ fn picture(measurement: &Measurement, fits: &[Judged]) -> String {
             ln_f: plot::of(&outcome.material()),
         })
         .collect();
-    plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)
+    plot::overlay_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &lines)
 }

@@ -99,6 +99,9 @@ fn page(fit: &FittedScan, minima: bool) -> String {
     for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &fit.derived, weighted) {
         line(known);
     }
+    for hint in &fit.hints {
+        line(format!("  hint       {}", hint.text));
+    }
     if minima {
         page += &minima_table(outcome, &outcome.minima);
     }

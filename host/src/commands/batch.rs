@@ -12,7 +12,7 @@ pub(super) mod shard;
 mod summary;
 
 use std::io::{self, Seek, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
@@ -75,9 +75,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
     let files = list::files(&arguments.scans, out, streams.input)?;
+    // Lists of names are inputs too.
+    let lists = arguments.scans.iter().map(|scan| list::name(scan).unwrap_or(scan));
+    let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).chain(lists).collect();
     let target = match arguments.shard {
-        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
-        None => output::target(Some(out), &files)?,
+        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &inputs)?),
+        None => output::target(Some(out), &inputs)?,
     };
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
@@ -95,7 +98,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(folder) => folder.path().join("partial"),
         None => record::partial_path(out, shard),
     };
-    if target::is_one_of(&kept_in, &files) {
+    if target::is_one_of(&kept_in, &inputs) {
         return Err(Error::new("this is a scan, and here finished fits are to be kept")
             .in_file(kept_in.display().to_string())
             .help("give --out another name"));

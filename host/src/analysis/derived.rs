@@ -47,6 +47,13 @@ pub struct Derived {
     pub reflectance: Value,
 }
 
+impl Derived {
+    /// Does no more light leave than arrives?
+    pub fn conserves_energy(&self) -> bool {
+        self.reflectance.value <= 1.0
+    }
+}
+
 /// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
 pub fn at_each_angle(samples: &[Sample<f64>], params: &Params<f64>, known: &Uncertainty) -> Vec<Derived> {
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();

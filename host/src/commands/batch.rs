@@ -26,6 +26,7 @@ use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output;
+use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
 use crate::target::{self, Target};
 use journal::Journal;
@@ -74,6 +75,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
+    arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
     // Lists of names are inputs too.
     let lists = arguments.scans.iter().map(|scan| list::name(scan).unwrap_or(scan));
@@ -168,7 +170,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 /// A record is broken, or the output cannot be written.
 pub(super) fn deliver(
     form: Form,
-    columns: &[String],
+    columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     target: Option<&Target>,
     streams: &mut Streams,

@@ -1,5 +1,6 @@
 //! Results of earlier fits, whose scans are to be reported.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use brdfit_core::brdf::{NAMES, Params};
@@ -8,7 +9,6 @@ use serde::Deserialize;
 use crate::error::Error;
 use crate::output::shortest;
 use crate::plain::of_cell;
-use crate::result::json::JsonParameters;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub fn parse(bytes: &[u8]) -> Option<Vec<Fitted>> {
 struct Object {
     file: PathBuf,
     scan: Option<String>,
-    parameters: Option<JsonParameters>,
+    parameters: Option<HashMap<String, f64>>,
     error: Option<String>,
 }
 
@@ -44,7 +44,10 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
     let objects = one.or_else(|_| serde_json::from_str::<Vec<Object>>(text)).ok()?;
     let fitted = |object: Object| {
         let params = match object.parameters {
-            Some(parameters) => Ok(parameters.into()),
+            Some(values) => {
+                let values: Option<Vec<f64>> = NAMES.iter().map(|&name| values.get(name).copied()).collect();
+                Ok(Params::from_array(values?.try_into().ok()?))
+            }
             None => Err(object.error?),
         };
         Some(Fitted {

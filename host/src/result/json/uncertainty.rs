@@ -4,6 +4,7 @@ use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::uncertainty::Place;
 use serde::Serialize;
 
+use super::by_name::{ByName, by_name};
 use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::uncertainty::Uncertainty;
@@ -24,28 +25,6 @@ pub struct Known {
     correlation: ByName<ByName<f64>>,
     on_bound: Vec<OnBound>,
     undetermined: Vec<Open>,
-}
-
-/// One for each parameter.
-#[derive(Serialize)]
-struct ByName<T> {
-    rho_d: T,
-    rho_s: T,
-    rho_v: T,
-    m: T,
-    n: T,
-    kappa: T,
-}
-
-fn by_name<T>([rho_d, rho_s, rho_v, m, n, kappa]: [T; 6]) -> ByName<T> {
-    ByName {
-        rho_d,
-        rho_s,
-        rho_v,
-        m,
-        n,
-        kappa,
-    }
 }
 
 #[derive(Serialize)]
@@ -134,6 +113,6 @@ pub fn at_angle(at: &Derived) -> AtAngle {
         peak_brdf_per_sr: at.peak.map(|peak| number(peak.f)),
         width_deg: at.peak.and_then(|peak| peak.width).map(degrees),
         reflectance: number(at.reflectance),
-        energy_conserved: at.reflectance.value <= 1.0,
+        energy_conserved: at.conserves_energy(),
     }
 }

@@ -26,6 +26,7 @@ pub mod role;
 mod rows;
 mod sheet;
 mod side;
+pub mod source;
 mod table;
 pub mod uncertainty;
 pub mod unit;
@@ -48,6 +49,7 @@ use format::Format;
 pub use left_out::LeftOut;
 pub use options::{ReadAs, ReadOptions};
 use raw::RawScan;
+use source::Source;
 pub use units::azimuth;
 
 /// A scan as it was read.
@@ -185,6 +187,8 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
     }
     let mut scans = raw::select(scans, &options.column)?;
     for scan in &mut scans {
+        scan.about.sources.push(Source::new(file, bytes));
+        scan.about.asked = options.clone();
         about::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;

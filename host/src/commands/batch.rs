@@ -1,14 +1,10 @@
 //! `brdfit batch`: many scans, of which each is fitted once, whatever happens.
 
-mod journal;
 mod list;
-pub(super) mod own;
 #[cfg(feature = "parquet")]
 mod parquet;
-pub(super) mod record;
 pub(super) mod results;
 mod run;
-pub(super) mod shard;
 mod summary;
 
 use std::io::{self, Seek, Write};
@@ -26,13 +22,13 @@ use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output;
+use crate::records::journal::{self, Journal};
+use crate::records::record::{self, Head, Record};
+use crate::records::shard::Shard;
 use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
 use crate::target::{self, Target};
-use journal::Journal;
-use record::{Head, Record};
 use results::Form;
-use shard::Shard;
 use summary::Summary;
 
 /// Fits many scans; keeps what is done when interrupted

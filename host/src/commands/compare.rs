@@ -10,6 +10,7 @@ use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{self, Format, OutputArguments, deliver, shortest};
 use crate::plot::{self, picture};
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
@@ -132,7 +133,7 @@ fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
             })
         })
         .collect();
-    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
+    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models, "provenance": provenance(&measurement.about, None) });
     output::json(&value)
 }
 

@@ -35,6 +35,9 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
+    /// Adds the time of each search to JSON and CSV, which are then not the same in each run
+    #[arg(long)]
+    time: bool,
     /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
@@ -71,7 +74,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         .collect()
     });
     bar.finish_and_clear();
-    let reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    let mut reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    if arguments.output.format != TableFormat::Text && !arguments.time {
+        reports.iter_mut().for_each(|report| report.elapsed = None);
+    }
     let missing = measurements.len() - reports.len();
     let ended = match missing {
         0 => Ended::default(),

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -124,6 +125,7 @@ fn json(measurements: &[Measurement], fitted: &Fitted) -> String {
                 "scan": measurement.label(),
                 "parameters": of(|p| p.0.into()),
                 "stderr": of(|p| p.1.into()),
+                "provenance": provenance(&measurement.about, None),
             })
         })
         .collect();

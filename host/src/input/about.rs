@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::facts;
 use super::options::ReadOptions;
 use super::raw::RawScan;
+use super::source::Source;
 use super::units::Angles;
 use crate::error::Error;
 use crate::plain::some_of;
@@ -28,6 +29,10 @@ pub struct About {
     pub sigma_ln: Option<f64>,
     /// What was done to the numbers, such as angles of a full turn that became negative.
     pub notes: Vec<String>,
+    /// The files of the scan, in order.
+    pub sources: Vec<Source>,
+    /// What the user said about them.
+    pub asked: ReadOptions,
 }
 
 impl About {
@@ -48,6 +53,8 @@ impl Default for About {
             divisor: 1.0,
             sigma_ln: None,
             notes: Vec::new(),
+            sources: Vec::new(),
+            asked: ReadOptions::default(),
         }
     }
 }

@@ -1,12 +1,15 @@
 //! What the user says about single columns: `--columns theta_s=2,brdf=3`.
 
+use serde::Serialize;
+
 use super::head::{Head, plain};
 use super::role::{self, Role};
 use super::units::Quantity;
 use crate::error::{Error, shown};
 
 /// What a column is said to hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
     /// A role that a name could give too.
     Role(Role),

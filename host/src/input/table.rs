@@ -388,7 +388,7 @@ impl<'a> Reader<'a> {
             angles_named: columns.angles_named,
             divisor: value.divisor,
             sigma_ln: self.facts.sigma_ln,
-            notes: Vec::new(),
+            ..About::default()
         }
     }
 

@@ -3,7 +3,6 @@
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 
-use super::provenance::Source;
 use crate::analysis::derived::{self, Value};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
@@ -19,8 +18,6 @@ const STEEPEST: u32 = 88;
 pub struct Section {
     /// File and name of the scan.
     pub label: String,
-    /// Its file.
-    pub source: Source,
     /// The fit.
     pub report: FittedScan,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
@@ -46,7 +43,7 @@ impl Section {
     ///
     /// # Errors
     /// The scan can not be fitted.
-    pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
+    pub fn new(measurement: &Measurement, options: &FitOptions) -> Result<Section, Error> {
         let report = fit(measurement, options)?;
         let samples = robust::kept(&measurement.samples, &report.outcome);
         let paper = FitOptions {
@@ -66,7 +63,6 @@ impl Section {
         };
         Ok(Section {
             label: measurement.label(),
-            source: source.clone(),
             figures: figures(&samples, &report, &survey.minima, starts),
             report,
             survey,

@@ -2,6 +2,7 @@
 
 mod by_name;
 mod choice;
+pub mod provenance;
 mod uncertainty;
 
 use serde::ser::SerializeMap;
@@ -15,6 +16,7 @@ use crate::input::{LeftOut, ReadAs};
 use crate::output;
 use by_name::{ByName, by_name};
 use choice::{Selection, selection};
+use provenance::{Provenance, provenance};
 use uncertainty::{AtAngle, Known, at_angle, known};
 
 #[derive(Serialize)]
@@ -41,6 +43,7 @@ struct Document<'a> {
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
     evaluations: Evaluations,
+    provenance: Provenance<'a>,
     #[serde(flatten)]
     time: Columns<'a>,
 }
@@ -102,6 +105,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
+        provenance: provenance(&scan.about, Some(&scan.options)),
         time: Columns(scan, Json::Time),
     }
 }

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::own;
 use crate::error::{Error, shown};
 use crate::input::bytes::{self, STDIN};
+use crate::records::own;
 
 /// The files that the arguments name, in their order, each once: what a folder or a pattern stands for is sorted by name.
 ///

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::journal::Journal;
-use super::record::{Fitted, Line, Record, Row, Rows, fingerprint};
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
+use crate::records::journal::Journal;
+use crate::records::record::{Fitted, Line, Record, Row, Rows, fingerprint};
 use crate::result;
 use crate::result::cell::{Cell, Kind};
 use crate::result::columns::{Column, Json, of_fits};

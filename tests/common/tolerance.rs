@@ -181,6 +181,8 @@ pub const FRED_SMOOTHED: Tolerance = Tolerance(0.15);
 pub const ZEMAX_ROUND_TRIP: Tolerance = Tolerance(1e-9);
 /// BRDF in a BiRD file less that of Eq. 14 as printed; relative; measured 3.0e-13.
 pub const BIRD_ROUND_TRIP: Tolerance = Tolerance(5e-13);
+/// BRDF in an OpenMATERIAL file less that of Eq. 14 as printed; relative; measured 6.1e-13.
+pub const OPENMATERIAL_ROUND_TRIP: Tolerance = Tolerance(1e-12);
 /// BRDF of the shader for BRDF Explorer, computed in double, less that of Eq. 14 as printed; relative; measured 1.5e-13.
 pub const SHADER: Tolerance = Tolerance(5e-13);
 // Robust fits: root of the mean squared difference of ln f between the fit of a raw scan and that of the cleaned one.

@@ -23,6 +23,8 @@ pub struct Model {
     pub stderr: [Option<f64>; 6],
     /// Where it comes from, in one line.
     pub origin: String,
+    /// The wavelength in nm, if the scan is named by one.
+    pub wavelength: Option<f64>,
 }
 
 impl Model {
@@ -33,6 +35,7 @@ impl Model {
             params,
             stderr: [None; 6],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
+            wavelength: None,
         }
     }
 
@@ -86,6 +89,7 @@ impl Model {
             params: Params::from_array(values),
             stderr,
             origin: plain(&origin).into_owned(),
+            wavelength: text("scan").and_then(wavelength),
         })
     }
 
@@ -93,6 +97,14 @@ impl Model {
     pub fn f(&self, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         Geometry::new(theta_i, theta_s, delta_phi).map_or(0.0, |geometry| Real::exp(ln_f(&self.params, &geometry)))
     }
+}
+
+/// The wavelength in a scan's name, such as `R 550 nm` or `550nm`.
+fn wavelength(scan: &str) -> Option<f64> {
+    let before = scan.trim_end().strip_suffix("nm")?.trim_end();
+    let start = before.rfind(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let number = &before[start.map_or(0, |start| start + 1)..];
+    number.parse().ok().filter(|&length| length > 0.0)
 }
 
 /// Words that mean something else to Python, C, C++ or Rust, or are models of Mitsuba's own.
@@ -131,6 +143,20 @@ pub(super) fn word(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wavelengths_are_found_in_names() {
+        for (name, expected) in [
+            ("550 nm", Some(550.0)),
+            ("s 632.8nm", Some(632.8)),
+            ("brdf_550nm", Some(550.0)),
+            ("R", None),
+            ("nm", None),
+            ("0 nm", None),
+        ] {
+            assert_eq!(wavelength(name), expected, "{name}");
+        }
+    }
 
     #[test]
     fn names_become_identifiers() {

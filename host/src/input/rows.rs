@@ -22,14 +22,15 @@ pub fn delimiter(line: &str) -> Option<u8> {
 
 /// The lines of a text with their numbers, from 1, and where they begin; any kind of line ends is fine.
 pub fn lines(text: &str) -> impl Iterator<Item = (u64, usize, &str)> {
+    let bytes = text.as_bytes();
     let mut start = 0;
     (1..).map_while(move |number| {
-        let rest = text.get(start..).filter(|rest| !rest.is_empty())?;
-        let end = rest.find(['\n', '\r']).unwrap_or(rest.len());
+        let rest = bytes.get(start..).filter(|rest| !rest.is_empty())?;
+        let end = start + memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let begin = start;
-        let pair = rest[end..].starts_with("\r\n");
-        start += end + if pair { 2 } else { 1 };
-        Some((number, begin, &rest[..end]))
+        let pair = bytes[end..].starts_with(b"\r\n");
+        start = end + if pair { 2 } else { 1 };
+        Some((number, begin, &text[begin..end]))
     })
 }
 
@@ -83,13 +84,46 @@ pub fn each(
     delimiter: Option<u8>,
     mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let Some(delimiter) = delimiter else {
-        for (number, _, line) in lines(text).filter(|(_, _, line)| !is_remark(line)) {
-            let cells: Vec<&str> = line.split_whitespace().collect();
+    if let Some(delimiter) = delimiter
+        && memchr::memchr(b'"', text.as_bytes()).is_some()
+    {
+        return quoted(text, delimiter, take);
+    }
+    let mut cells: Vec<&str> = Vec::new();
+    for (number, _, line) in lines(text).filter(|(_, _, line)| !is_remark(line)) {
+        cells.clear();
+        match delimiter {
+            None => cells.extend(line.split_ascii_whitespace()),
+            Some(delimiter) => cells.extend(parts(line, delimiter)),
+        }
+        // Spreadsheets write blank rows as delimiters.
+        if cells.iter().any(|cell| !cell.is_empty()) {
             take(number, &cells)?;
         }
-        return Ok(());
-    };
+    }
+    Ok(())
+}
+
+/// The cells of a line without quotes, trimmed.
+fn parts(line: &str, delimiter: u8) -> impl Iterator<Item = &str> {
+    let ends = memchr::memchr_iter(delimiter, line.as_bytes()).chain([line.len()]);
+    let mut begin = 0;
+    ends.map(move |end| {
+        let cell = &line[begin..end];
+        begin = end + 1;
+        // Most cells have nothing to trim.
+        let bare = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
+        let bytes = cell.as_bytes();
+        if bare(bytes.first()) && bare(bytes.last()) {
+            cell
+        } else {
+            cell.trim()
+        }
+    })
+}
+
+/// As [`each`] where cells may be in quotes, and so hold delimiters and line ends.
+fn quoted(text: &str, delimiter: u8, mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -101,7 +135,7 @@ pub fn each(
         .read_record(&mut record)
         .map_err(|error| Error::new(error.to_string()))?
     {
-        // The reader skips only `#` in the first place of a line, and spreadsheets write blank rows as delimiters.
+        // The reader skips only `#` in the first place of a line.
         let blank = record.iter().all(|cell| cell.trim().is_empty());
         if blank || record[0].trim_start().starts_with('#') {
             continue;
@@ -218,6 +252,24 @@ mod tests {
                 .to_string()
                 .contains("decimal comma")
         );
+    }
+
+    #[test]
+    fn rows_with_and_without_quotes_are_the_same() {
+        let text = "# a\n theta , b\n\n1,2\r\n # x\n,,\n3 ,\u{a0}4\n5,";
+        let rows = |text: &str| {
+            let mut rows: Vec<(u64, Vec<String>)> = Vec::new();
+            each(text, Some(b','), |line, cells| {
+                rows.push((line, cells.iter().map(|cell| cell.to_string()).collect()));
+                Ok(())
+            })
+            .unwrap();
+            rows
+        };
+        let plain = rows(text);
+        assert_eq!(plain[1], (4, vec!["1".to_string(), "2".to_string()]));
+        assert_eq!(plain.iter().map(|row| row.0).collect::<Vec<_>>(), [2, 4, 7, 8]);
+        assert_eq!(rows(&text.replace("1,2", "\"1\",2")), plain);
     }
 
     #[test]

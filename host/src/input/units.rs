@@ -180,11 +180,11 @@ impl Quantity {
         if !(value > 0.0) {
             return fail("which has no logarithm");
         }
-        let cos_s = Real::sin_cos(theta_s).1;
+        let cos_s = || Real::sin_cos(theta_s).1;
         let brdf = match self {
-            Quantity::BrdfCos => value / cos_s,
+            Quantity::BrdfCos => value / cos_s(),
             Quantity::Brf => value / f64::PI,
-            Quantity::BrfCos => value / (f64::PI * cos_s),
+            Quantity::BrfCos => value / (f64::PI * cos_s()),
             _ => value,
         };
         if brdf >= f64::MIN_POSITIVE && brdf.is_finite() {

@@ -6,9 +6,9 @@ use std::hint::black_box;
 use std::process::Command;
 
 use brdfit::analysis::paper_sets::paper_scans;
-use brdfit::engine::simd::{FastScan, Simd};
+use brdfit::engine::simd::{FastEq14, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
-use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
+use brdfit_core::brdf::{ALL, DIFFUSE, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
@@ -72,9 +72,8 @@ fn repeat<R: Real, const TERMS: u8, const P: usize>(
         simd,
         ..FitOptions::default()
     };
-    let real = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
-    let bounds = Scan::<R, TERMS, P>::bounds(&real(&options.lower), &real(&options.upper));
-    let scene = FastScan {
+    let bounds = Scan::<R, TERMS, P>::usual_bounds();
+    let scene = FastEq14 {
         scan: Scan::<R, TERMS, P>::new(&blocks),
         simd,
     };

@@ -36,6 +36,7 @@ fn json_keeps_its_contract() {
         "seed",
         "starts",
         "terms",
+        "model",
         "mse2",
         "rms_ln",
         "parameters",
@@ -181,7 +182,7 @@ fn csv_and_json_have_the_same_values() {
         }
         compared.push(name);
     }
-    let both = "file samples method seed starts mse2 rho_d rho_s rho_v m n kappa rms_ln stop robust_scale chi2";
+    let both = "file samples method seed starts model mse2 rho_d rho_s rho_v m n kappa rms_ln stop robust_scale chi2";
     assert_eq!(compared, both.split(' ').collect::<Vec<_>>());
 }
 

@@ -2,9 +2,8 @@
 
 use std::fs;
 
-use brdfit::engine;
 use brdfit::input::{self, ReadOptions};
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use brdfit_suite::program::{self, write};
@@ -323,7 +322,7 @@ fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
 fn rms_from_truth(samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-        let residual = engine::ln_f(&Params::from_array(TRUTH), &geometry) - Real::ln(sample.brdf);
+        let residual = Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry) - Real::ln(sample.brdf);
         residual * residual
     });
     (squares.sum::<f64>() / samples.len() as f64).sqrt()

@@ -218,6 +218,6 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .at_line(measurement.lines[index])
             .help("take f64, or leave out the row"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
-        FitError::Terms(_) => plain,
+        FitError::Terms(_) | FitError::Interrupted => plain,
     }
 }

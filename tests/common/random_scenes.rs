@@ -1,6 +1,6 @@
 //! Random scans of many kinds, and a brute-force search to judge others by.
 
-use brdfit::engine::simd::FastScan;
+use brdfit::engine::simd::FastEq14;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options};
@@ -126,7 +126,7 @@ fn clean(kind: Kind, params: &Params<f64>, wide: &Params<f64>, geometry: &Geomet
 /// The least cost from `starts` starts: a third uniform over the bounds, the others candidates of the default search under another seed.
 ///
 /// Each makes 25 passes, and goes on to convergence if it is then within 30 % of the best.
-pub fn brute(scene: &FastScan<f64, ALL, 6>, bounds: &Bounds<f64, 6>, starts: u64, seed: u64) -> f64 {
+pub fn brute(scene: &FastEq14<f64, ALL, 6>, bounds: &Bounds<f64, 6>, starts: u64, seed: u64) -> f64 {
     let options = Options::default();
     let mut best = f64::INFINITY;
     for i in 0..starts {

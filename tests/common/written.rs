@@ -1,7 +1,6 @@
 //! One scan in the text formats, as their programs would write it.
 
-use brdfit::engine;
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
 
@@ -18,7 +17,7 @@ pub fn brdf(theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         delta_phi.to_radians()
     };
     let geometry = Geometry::new(theta_i.to_radians(), theta_s.to_radians(), delta_phi).expect("valid angles");
-    Real::exp(engine::ln_f(&Params::from_array(TRUTH), &geometry))
+    Real::exp(Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry))
 }
 
 /// Scattering angles in plane.

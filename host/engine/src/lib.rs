@@ -4,9 +4,14 @@
 //!
 //! [`FitOptions`] and samples go into [`fit`], an [`Outcome`] comes out; what it says does not depend on threads or instructions.
 
+mod compiled;
+mod layout;
+mod material;
+mod model;
 mod options;
 mod outcome;
 mod search;
+mod values;
 
 pub mod joint;
 pub mod models;
@@ -14,7 +19,13 @@ pub mod robust;
 pub mod simd;
 pub mod trace;
 pub mod uncertainty;
+pub mod until;
 
+pub use compiled::{Both, Kernel, blocks, blocks_of};
+pub use material::Material;
+pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
-pub use outcome::{FitError, Minimum, Outcome, ln_f};
-pub use search::{blocks, descend, fit};
+pub use outcome::{FitError, Minimum, Outcome};
+pub use search::{descend, fit};
+pub use until::Until;
+pub use values::{MOST, Values};

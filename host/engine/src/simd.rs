@@ -1,9 +1,10 @@
 //! Runs the passes over a scan on the widest vectors that the processor has; the bits do not depend on it.
 
-use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{Bounds, Linearization, Problem};
+use brdfit_core::microfacet::Microfacet;
+use brdfit_core::model::Model;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
+use brdfit_core::residuals::Residuals;
 use brdfit_core::search::{Candidate, Scene};
 use pulp::NullaryFnOnce;
 
@@ -38,6 +39,15 @@ impl Simd {
         Simd::available().pop().unwrap_or(Simd::Portable)
     }
 
+    /// The next fewer instructions, for passes that are not compiled for these.
+    pub fn fewer(self) -> Simd {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(_) => pulp::x86::V3::try_new().map_or(Simd::Portable, Simd::V3),
+            _ => Simd::Portable,
+        }
+    }
+
     /// `portable`, `avx2` or `avx512`.
     pub fn name(self) -> &'static str {
         match self {
@@ -50,17 +60,37 @@ impl Simd {
     }
 }
 
-/// A scan whose passes use `simd`.
-#[derive(Clone, Copy, Debug)]
-pub struct FastScan<'a, R, const TERMS: u8, const P: usize> {
+impl PartialEq for Simd {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+/// Passes are those of every processor.
+pub const PORTABLE: u8 = 3;
+/// Passes in double precision have AVX2 beside what every processor has.
+pub const AVX2: u8 = 0;
+/// Those in double precision have AVX-512 too.
+pub const AVX512: u8 = 1;
+/// Those in single precision have both as well.
+pub const EVERY: u8 = 2;
+
+/// A scan whose passes use `simd`, as far as `VECTORS` has them compiled: [`PORTABLE`], [`AVX2`], [`AVX512`] or [`EVERY`].
+///
+/// Each set of instructions takes time to compile, so only Eq. 14 has all: instruments that fit in single precision run their own build.
+#[derive(Debug)]
+pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const VECTORS: u8 = EVERY> {
     /// The observations.
-    pub scan: Scan<'a, R, TERMS, P>,
+    pub scan: Residuals<'a, R, M, P, C>,
     /// The instructions.
     pub simd: Simd,
 }
 
-struct Cost<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TERMS, P> {
+/// The same for `TERMS` of Eq. 14.
+pub type FastEq14<'a, R, const TERMS: u8, const P: usize> = FastScan<'a, R, Microfacet<TERMS>, P>;
+
+struct Cost<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Cost<'_, R, M, P, C> {
     type Output = R;
     #[inline(always)]
     fn call(self) -> R {
@@ -68,8 +98,8 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TER
     }
 }
 
-struct Linearize<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R, TERMS, P> {
+struct Linearize<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Linearize<'_, R, M, P, C> {
     type Output = Linearization<R, P>;
     #[inline(always)]
     fn call(self) -> Linearization<R, P> {
@@ -77,14 +107,14 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R
     }
 }
 
-struct Propose<'a, R, const TERMS: u8, const P: usize>(
-    &'a Scan<'a, R, TERMS, P>,
+struct Propose<'a, R, M, const P: usize, const C: usize>(
+    &'a Residuals<'a, R, M, P, C>,
     &'a Bounds<R, P>,
     u64,
     u64,
     Option<&'a [R; P]>,
 );
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Propose<'_, R, M, P, C> {
     type Output = Candidate<R, P>;
     #[inline(always)]
     fn call(self) -> Candidate<R, P> {
@@ -92,23 +122,38 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, 
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> FastScan<'_, R, TERMS, P> {
-    /// Single precision has wide vectors with all terms only: they would double the time to compile this crate, and instruments that fit in single precision run their own build.
-    const WIDE: bool = TERMS == ALL || size_of::<R>() == size_of::<f64>();
+impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8>
+    FastScan<'a, R, M, P, C, VECTORS>
+{
+    const DOUBLE: bool = size_of::<R>() == size_of::<f64>();
+    const HAS_AVX2: bool = VECTORS == EVERY || VECTORS != PORTABLE && Self::DOUBLE;
+    const HAS_AVX512: bool = VECTORS == EVERY || VECTORS == AVX512 && Self::DOUBLE;
+
+    /// A scan with the instructions that `simd` and the passes of this model have both.
+    pub fn new(scan: Residuals<'a, R, M, P, C>, simd: Simd) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        let simd = match simd {
+            Simd::V4(_) if !Self::HAS_AVX512 => simd.fewer(),
+            other => other,
+        };
+        FastScan { scan, simd }
+    }
 
     #[inline(always)]
     fn run<F: NullaryFnOnce>(&self, pass: F) -> F::Output {
         match self.simd {
             #[cfg(target_arch = "x86_64")]
-            Simd::V3(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            Simd::V4(simd) if const { Self::HAS_AVX512 } => simd.vectorize(pass),
             #[cfg(target_arch = "x86_64")]
-            Simd::V4(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            Simd::V3(simd) if const { Self::HAS_AVX2 } => simd.vectorize(pass),
             _ => pass.call(),
         }
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Problem<R, P>
+    for FastScan<'_, R, M, P, C, VECTORS>
+{
     fn cost(&self, x: &[R; P]) -> R {
         self.run(Cost(&self.scan, x))
     }
@@ -120,7 +165,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
+    for FastScan<'_, R, M, P, C, VECTORS>
+{
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.run(Propose(&self.scan, bounds, seed, i, like))
     }

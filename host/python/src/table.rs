@@ -1,6 +1,6 @@
 //! The columns of the program's tables, as values for Python.
 
-use brdfit::engine::{FitOptions, Outcome};
+use brdfit::engine::{FitOptions, Model, Outcome};
 use brdfit::result::cell::{Cell, Kind};
 use brdfit::result::columns::{Column, Row, of_outcomes};
 use numpy::IntoPyArray;
@@ -19,7 +19,7 @@ fn row<'a>(options: &'a FitOptions, outcome: &'a Outcome) -> Row<'a> {
 /// Of one fit: each column with its value.
 pub fn of_one<'py>(py: Python<'py>, options: &FitOptions, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(py);
-    for column in of_outcomes() {
+    for column in of_outcomes(&[outcome.model]) {
         let name = &column.name;
         match column.cell(&row(options, outcome)) {
             Cell::Empty => table.set_item(name, py.None()),
@@ -44,14 +44,14 @@ enum Values {
 
 impl Table {
     /// A table without rows.
-    pub fn new() -> Table {
+    pub fn new(model: &Model) -> Table {
         let of_numbers = |column: Column| match column.kind() {
             Kind::Text => None,
             Kind::Flag => Some((column, Values::Flag(Vec::new()))),
             Kind::Whole => Some((column, Values::Whole(Vec::new()))),
             Kind::Number => Some((column, Values::Number(Vec::new()))),
         };
-        Table(of_outcomes().into_iter().filter_map(of_numbers).collect())
+        Table(of_outcomes(&[model]).into_iter().filter_map(of_numbers).collect())
     }
 
     /// The cells of a fit.

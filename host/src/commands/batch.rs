@@ -15,8 +15,8 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::engine::FitOptions;
 use crate::engine::simd::Simd;
+use crate::engine::{FitOptions, Until};
 use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
@@ -80,13 +80,14 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(shard) => Some(Target::new(&record::shard_path(out, shard), &inputs)?),
         None => output::target(Some(out), &inputs)?,
     };
+    let models = vec![options.model];
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
         options: asked_for(options, arguments),
         files: files.len(),
         names: record::names(&files),
         rows: form.rows(),
-        columns: run::columns(),
+        columns: run::columns(&models),
         shard,
     };
     let scratch = to_stdout.then(tempfile::tempdir).transpose().map_err(|error| {
@@ -117,7 +118,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let interrupt = interrupt::keeping();
     let job = run::Job {
         files: &files,
-        options,
+        options: FitOptions {
+            until: Until::set(interrupt),
+            ..options
+        },
+        models,
         read: &arguments.read,
         rows: head.rows,
         interrupt,

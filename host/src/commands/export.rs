@@ -10,6 +10,7 @@ use crate::export::{bird, constants, glsl, mitsuba, native, openmaterial, zemax}
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
 use crate::output::{deliver, target};
+use crate::parameters;
 use crate::streams::Streams;
 
 /// Writes a fitted model for other programs
@@ -25,9 +26,17 @@ pub struct Arguments {
         conflicts_with = "params"
     )]
     result: Option<PathBuf>,
-    /// All six parameters, in place of a result
+    /// All parameters of the model, in place of a result
     #[arg(long, value_name = "NAME=X,...")]
     params: Option<String>,
+    /// The model of --params, one of those that brdfit compare shows
+    #[arg(
+        long = "model",
+        value_name = "NAME",
+        default_value = "beckmann",
+        conflicts_with = "result"
+    )]
+    model: String,
     /// Which result, if there are several; the first is 1
     #[arg(long, value_name = "N", requires = "result")]
     index: Option<usize>,
@@ -81,22 +90,25 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             let fail = |error: Error| error.in_file(path.display().to_string());
             Model::of_json(&bytes, arguments.index).map_err(fail)?
         }
-        (None, params) => Model::of_params(all_parameters(params.as_deref().unwrap_or_default(), "--params")?),
+        (None, params) => {
+            let of = parameters::model(&arguments.model)?;
+            Model::of_params(all_parameters(of, params.as_deref().unwrap_or_default(), "--params")?)
+        }
     };
     if let Some(name) = &arguments.name {
         model.name.clone_from(name);
     }
     let text = match arguments.to {
         Form::Zemax => zemax::write(&model),
-        Form::Glsl => glsl::write(&model),
-        Form::Mitsuba => mitsuba::write(&model),
+        Form::Glsl => glsl::write(&model)?,
+        Form::Mitsuba => mitsuba::write(&model)?,
         Form::MitsubaNative => {
-            let (text, deviation) = native::write(&model);
+            let (text, deviation) = native::write(&model)?;
             let _ = writeln!(streams.errors, "{deviation}");
             text
         }
-        Form::C => constants::c(&model),
-        Form::Rust => constants::rust(&model),
+        Form::C => constants::c(&model)?,
+        Form::Rust => constants::rust(&model)?,
         Form::Bird => bird::write(&model),
         Form::Openmaterial => {
             let wavelength = arguments.wavelength.or(model.wavelength).ok_or_else(|| {

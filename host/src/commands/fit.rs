@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::{FitOptions, Method};
+use crate::engine::{FitOptions, Material, Method, Until};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::interrupt;
@@ -60,7 +60,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let bar = progress(streams.progress, &options, measurements.len());
     // Of one scan nothing is finished before all is.
     let several = measurements.len() > 1;
-    let interrupted = || several && interrupt::keeping().load(Ordering::Relaxed);
+    let interrupt = several.then(interrupt::keeping);
+    let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
+    let options = FitOptions {
+        until: interrupt.map_or_else(Until::default, Until::set),
+        ..options
+    };
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {
@@ -69,7 +74,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
             }
             let report = fit(measurement, &options);
             bar.inc(1);
-            Some(report)
+            Some(report).filter(|report| report.is_ok() || !interrupted())
         })
         .collect()
     });
@@ -99,7 +104,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         TableFormat::Csv => result::csv(&reports, arguments.minima),
     };
     if let (Some(picture), [measurement], [report]) = (&picture, &measurements[..], &reports[..]) {
-        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+        let material = |values| Material {
+            values,
+            ..report.outcome.material()
+        };
+        let minima = report.outcome.minima.iter();
+        let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             picture,
             &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),

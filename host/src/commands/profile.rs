@@ -6,7 +6,6 @@ mod text;
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::{NAMES, has};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -112,20 +111,19 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
 
 /// The places of the parameters asked for.
 fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Error> {
-    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
-    let free = |index: usize| has(options.terms, index) && lower[index] < upper[index];
-    let all: Vec<usize> = (0..NAMES.len()).filter(|&index| free(index)).collect();
-    let known = || all.iter().map(|&index| NAMES[index]).collect::<Vec<_>>().join(", ");
+    let name = |index: usize| options.model.parameters[index].name;
+    let all: Vec<usize> = options.free().collect();
+    let known = || all.iter().map(|&index| name(index)).collect::<Vec<_>>().join(", ");
     if names.is_empty() {
         return Ok(all);
     }
-    let one = |name: &String| {
-        let index = all.iter().copied().find(|&index| NAMES[index] == name.trim());
+    let one = |asked: &String| {
+        let index = all.iter().copied().find(|&index| name(index) == asked.trim());
         index.ok_or_else(|| {
             let terms = term_names(options.terms).join(",");
             Error::new(format!(
                 "'{}' is no free parameter of the terms {terms}",
-                crate::error::shown(name)
+                crate::error::shown(asked)
             ))
             .help(format!("the free parameters are {}", known()))
         })

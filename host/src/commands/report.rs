@@ -6,10 +6,10 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use brdfit_core::brdf::Params;
 use clap::Args;
 use rayon::prelude::*;
 
+use crate::engine::Material;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
@@ -47,7 +47,7 @@ pub struct Arguments {
 struct Subject {
     measurement: Measurement,
     /// What its results say.
-    stored: Option<Params<f64>>,
+    stored: Option<Material>,
 }
 
 /// Runs the subcommand; `given` are all arguments of the program, which the page shows.
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
         each.map(|Subject { measurement, stored }| {
             let section = Section::new(measurement, &options)?;
             if let Some(stored) = stored {
-                results::agree(&section.label, &section.report.outcome.params, stored)?;
+                results::agree(&section.label, &section.report.outcome.material(), stored)?;
             }
             Ok(section)
         })
@@ -115,8 +115,8 @@ fn of_results(
     let mut files: HashMap<PathBuf, Vec<Subject>> = HashMap::new();
     let mut found = Vec::new();
     for one in fitted {
-        let stored = match one.params {
-            Ok(params) => params,
+        let stored = match one.material {
+            Ok(material) => material,
             Err(why) => {
                 // If standard error is closed, the page still says what it is of.
                 let _ = writeln!(streams.errors, "{name}: left out, as it has no fit: {why}");

@@ -9,9 +9,11 @@ use serde::Serialize;
 
 use crate::analysis::stability::assess::{Assessment, assess};
 use crate::analysis::stability::built_in;
+use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::output::{Format, OutputArguments, deliver, json};
+use crate::parameters::model;
 use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;
 use crate::terms::terms;
@@ -23,6 +25,9 @@ pub struct Arguments {
     /// A scan, as `brdfit fit` reads it; - is standard input [default: the built-in cases]
     #[arg(value_name = "SCAN")]
     scan: Option<PathBuf>,
+    /// The model, one of those that brdfit compare shows
+    #[arg(long, value_name = "NAME", default_value = "beckmann", requires = "scan")]
+    model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing
     #[arg(long, value_name = "LIST", default_value = "all", requires = "scan")]
     terms: String,
@@ -56,8 +61,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         }
         Some(path) => {
             let measurement = input::read_one(path, &arguments.read, streams.input)?;
-            let terms = terms(&arguments.terms)?;
-            let case = assess(&measurement.label(), &measurement.samples, terms)
+            let options = FitOptions {
+                terms: terms(&arguments.terms)?,
+                ..FitOptions::of(model(&arguments.model)?)
+            };
+            let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;
             let provenance = provenance(&measurement.about, None);
             let text = match arguments.output.format {

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use brdfit_core::brdf::{NAMES, Params};
-use brdfit_core::geometry::Geometry;
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::Sample;
+use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 use serde_json::Value;
 
-use crate::engine::ln_f;
+use crate::engine::{self, Material};
 use crate::error::Error;
-use crate::parameters::check;
+use crate::parameters::{check, model};
 use crate::plain::plain;
 
 /// A model, and what is known about it.
@@ -17,10 +18,10 @@ use crate::plain::plain;
 pub struct Model {
     /// What it is called: the scan's file, by default.
     pub name: String,
-    /// Its parameters.
-    pub params: Params<f64>,
+    /// Its BRDF.
+    pub material: Material,
     /// Their standard errors, as far as they are known.
-    pub stderr: [Option<f64>; 6],
+    pub stderr: Vec<Option<f64>>,
     /// Where it comes from, in one line.
     pub origin: String,
     /// The wavelength in nm, if the scan is named by one.
@@ -29,11 +30,11 @@ pub struct Model {
 
 impl Model {
     /// From parameters alone.
-    pub fn of_params(params: Params<f64>) -> Model {
+    pub fn of_params(material: Material) -> Model {
         Model {
             name: "material".into(),
-            params,
-            stderr: [None; 6],
+            material,
+            stderr: vec![None; material.values.len()],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
             wavelength: None,
         }
@@ -68,13 +69,17 @@ impl Model {
                     .help("count from 1")
                 })?,
         };
-        let mut values = [0.0; NAMES.len()];
-        for (place, name) in NAMES.into_iter().enumerate() {
-            let value = result["parameters"][name].as_f64();
-            values[place] = value.ok_or_else(|| none(&format!("there is no parameters.{name}")))?;
-        }
-        for (place, &value) in values.iter().enumerate() {
-            check(place, value)?;
+        // Results of version 0.1 name no model.
+        let model = match result["model"].as_str() {
+            Some(name) => model(name)?,
+            None => engine::Model::paper(),
+        };
+        let mut values = Vec::new();
+        for (place, parameter) in model.parameters.iter().enumerate() {
+            let value = result["parameters"][parameter.name].as_f64();
+            let value = value.ok_or_else(|| none(&format!("there is no parameters.{}", parameter.name)))?;
+            check(model, place, value)?;
+            values.push(value);
         }
         let text = |key: &str| result[key].as_str();
         let file = text("file").unwrap_or("material");
@@ -83,11 +88,14 @@ impl Model {
         if let Some(rms) = result["rms_ln"].as_f64() {
             origin += &format!(", rms of ln f {rms:.3}");
         }
-        let stderr = NAMES.map(|name| result["uncertainty"]["stderr"][name].as_f64());
+        let stderr = |parameter: &Parameter| result["uncertainty"]["stderr"][parameter.name].as_f64();
         Ok(Model {
             name,
-            params: Params::from_array(values),
-            stderr,
+            material: Material {
+                model,
+                values: values.into_iter().collect(),
+            },
+            stderr: model.parameters.iter().map(stderr).collect(),
             origin: plain(&origin).into_owned(),
             wavelength: text("scan").and_then(wavelength),
         })
@@ -95,7 +103,25 @@ impl Model {
 
     /// f in sr^-1; angles in radians, 0 beyond the horizon.
     pub fn f(&self, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
-        Geometry::new(theta_i, theta_s, delta_phi).map_or(0.0, |geometry| Real::exp(ln_f(&self.params, &geometry)))
+        let sample = Sample {
+            theta_i,
+            theta_s,
+            delta_phi,
+            brdf: 1.0,
+            weight: 1.0,
+        };
+        self.material.ln_f(&sample).map_or(0.0, Real::exp)
+    }
+
+    /// The parameters of Eq. 14, for forms that know no other model.
+    ///
+    /// # Errors
+    /// It is another model.
+    pub fn eq_14(&self, form: &str) -> Result<Params<f64>, Error> {
+        self.material.eq_14().ok_or_else(|| {
+            Error::new(format!("{form} can not hold the model {}", self.material.model.name))
+                .help("--to zemax and --to bird take any model; or fit --model beckmann")
+        })
     }
 }
 

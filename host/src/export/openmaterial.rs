@@ -18,11 +18,12 @@ const NOT_STATED: &str = "not stated";
 /// Angles are in radians, azimuth 0 is that of incidence and half a turn is forward.
 pub fn write(model: &Model, wavelength: f64) -> String {
     let metres = wavelength * 1e-9;
+    let width = model.material.width();
     let mut table = Vec::new();
     for theta_i in (0..=85).step_by(5).map(f64::from) {
-        let near = near(theta_i, model.params.m);
+        let near = near(theta_i, width);
         for &theta_s in &near {
-            for azimuth in azimuths(theta_s, model.params.m) {
+            for azimuth in azimuths(theta_s, width) {
                 let f = model.f(theta_i.to_radians(), theta_s.to_radians(), azimuth);
                 table.push([metres, theta_i.to_radians(), theta_s.to_radians(), azimuth, f]);
             }
@@ -81,7 +82,7 @@ fn azimuths(theta_s: f64, m: f64) -> Vec<f64> {
 fn uuid(model: &Model, wavelength: f64) -> String {
     let mut hash = Sha256::new();
     hash.update(model.name.as_bytes());
-    for number in model.params.to_array().into_iter().chain([wavelength]) {
+    for number in model.material.values.iter().copied().chain([wavelength]) {
         hash.update(number.to_le_bytes());
     }
     let mut bytes = [0u8; 16];

@@ -2,16 +2,15 @@
 //!
 //! A further column is one more entry here.
 
-use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::model::Parameter;
 use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
 use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
-use crate::engine::{FitOptions, Minimum, Outcome};
+use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
 use crate::names;
 use crate::output::shortest;
-use crate::parameters::MEANINGS;
 use crate::terms::term_names;
 
 /// A column of the tables.
@@ -69,7 +68,7 @@ impl<'a> From<&'a FittedScan> for Row<'a> {
 }
 
 impl Row<'_> {
-    fn params(&self) -> &Params<f64> {
+    fn params(&self) -> &Values {
         self.minimum
             .map_or(&self.outcome.params, |(_, minimum)| &minimum.params)
     }
@@ -83,8 +82,8 @@ enum Value {
     Whole(fn(&Row) -> Option<u64>),
     Number(fn(&Row) -> Option<f64>),
     Flag(fn(&Row) -> Option<bool>),
-    /// Of the parameter at a place of [`NAMES`].
-    OfParameter(fn(&Row, usize) -> Option<f64>, usize),
+    /// Of the parameter of this name, by its place; one that the row's model has not is empty.
+    OfParameter(fn(&Row, usize) -> Option<f64>, &'static str),
 }
 
 impl Column {
@@ -117,31 +116,31 @@ impl Column {
             Value::Whole(of) => of(row).map(Cell::Whole),
             Value::Number(of) => number(of(row)),
             Value::Flag(of) => of(row).map(Cell::Flag),
-            Value::OfParameter(of, index) => number(of(row, index)),
+            Value::OfParameter(of, name) => number(row.outcome.model.place(name).and_then(|place| of(row, place))),
         };
         cell.unwrap_or(Cell::Empty)
     }
 }
 
-/// The columns of a table with one row a fitted scan.
-pub fn of_fits() -> Vec<Column> {
-    [scan(), asked(), parameters(), found(), known(), of_scan()]
+/// The columns of a table with one row a fitted scan, of these models.
+pub fn of_fits(models: &[&Model]) -> Vec<Column> {
+    [scan(), asked(), parameters(models), found(), known(models), of_scan()]
         .into_iter()
         .flatten()
         .collect()
 }
 
 /// The columns of a table with one row a distinct minimum.
-pub fn of_minima() -> Vec<Column> {
-    [scan(), asked(), parameters(), minimum()]
+pub fn of_minima(models: &[&Model]) -> Vec<Column> {
+    [scan(), asked(), parameters(models), minimum()]
         .into_iter()
         .flatten()
         .collect()
 }
 
 /// The columns of a table with one row a fit, of whose scan nothing is known but the samples.
-pub fn of_outcomes() -> Vec<Column> {
-    [asked(), parameters(), found(), known()]
+pub fn of_outcomes(models: &[&Model]) -> Vec<Column> {
+    [asked(), parameters(models), found(), known(models)]
         .into_iter()
         .flatten()
         .collect()
@@ -175,17 +174,29 @@ fn asked() -> Vec<Column> {
         whole("starts", "starts of the search", Found, |row| {
             Some(row.options.starts().into())
         }),
+        text("model", "the model", Found, |row| Some(row.outcome.model.name.into())),
         words("terms", "terms of the model", Found, |row| {
-            term_names(row.options.terms)
+            term_names(row.outcome.terms)
         }),
         number("mse2", "1", eq_17, Found, mse2),
     ]
 }
 
-fn parameters() -> Vec<Column> {
-    let value = |row: &Row, index: usize| Some(row.params().to_array()[index]);
-    let one = |index| parameter("", "", index, value);
-    (0..NAMES.len()).map(one).collect()
+/// The parameters of all models, each once.
+fn every(models: &[&Model]) -> Vec<&'static Parameter> {
+    let mut all: Vec<&Parameter> = Vec::new();
+    for parameter in models.iter().flat_map(|model| model.parameters) {
+        if all.iter().all(|known| known.name != parameter.name) {
+            all.push(parameter);
+        }
+    }
+    all
+}
+
+fn parameters(models: &[&Model]) -> Vec<Column> {
+    let value = |row: &Row, place: usize| Some(row.params()[place]);
+    let one = |of| parameter("", "", of, value);
+    every(models).into_iter().map(one).collect()
 }
 
 /// What distinguishes a minimum.
@@ -244,7 +255,7 @@ fn found() -> Vec<Column> {
 }
 
 /// How well the parameters are known.
-fn known() -> Vec<Column> {
+fn known(models: &[&Model]) -> Vec<Column> {
     let degrees = whole(
         "degrees_of_freedom",
         "samples less parameters inside their bounds",
@@ -255,8 +266,10 @@ fn known() -> Vec<Column> {
         let known = &row.outcome.uncertainty;
         (known.places[index] == Some(Place::Inside)).then_some(known.stderr[index])
     };
-    let one = |index| parameter("stderr_", "standard error of the ", index, stderr);
-    std::iter::once(degrees).chain((0..NAMES.len()).map(one)).collect()
+    let one = |of| parameter("stderr_", "standard error of the ", of, stderr);
+    std::iter::once(degrees)
+        .chain(every(models).into_iter().map(one))
+        .collect()
 }
 
 /// What is known by the scan.
@@ -307,15 +320,13 @@ fn flag(name: &str, about: &str, json: Json, of: fn(&Row) -> Option<bool>) -> Co
     Column::new(name, "", about, json, Value::Flag(of))
 }
 
-/// One column for each parameter; `before` stands before its name and `about` before what it means.
-fn parameter(before: &str, about: &str, index: usize, of: fn(&Row, usize) -> Option<f64>) -> Column {
-    let name = NAMES[index];
-    let about = format!("{about}{}", MEANINGS[index]);
+/// The column of one parameter; `before` stands before its name and `about` before what it means.
+fn parameter(before: &str, about: &str, of: &'static Parameter, value: fn(&Row, usize) -> Option<f64>) -> Column {
     Column::new(
-        format!("{before}{name}"),
-        "1",
-        about,
+        format!("{before}{}", of.name),
+        if of.unit.is_empty() { "1" } else { of.unit },
+        format!("{about}{}", of.what),
         Json::Otherwise,
-        Value::OfParameter(of, index),
+        Value::OfParameter(value, of.name),
     )
 }

@@ -2,11 +2,13 @@
 
 use super::columns::{Row, of_fits, of_minima};
 use crate::analysis::fit::FittedScan;
+use crate::engine::Model;
 use crate::output::write_row;
 
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(scans: &[FittedScan], minima: bool) -> String {
-    let columns = if minima { of_minima() } else { of_fits() };
+    let models: Vec<&Model> = scans.iter().map(|scan| scan.outcome.model).collect();
+    let columns = if minima { of_minima(&models) } else { of_fits(&models) };
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory does not fail.
     let names: Vec<&String> = columns.iter().map(|column| &column.name).collect();

@@ -11,10 +11,10 @@ use serde::{Serialize, Serializer};
 use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
-use crate::engine::Minimum;
+use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::output;
-use by_name::{ByName, by_name};
+pub use by_name::ByName;
 use choice::{Selection, selection};
 use provenance::{Provenance, provenance};
 use uncertainty::{AtAngle, Known, at_angle, known};
@@ -55,7 +55,10 @@ impl Serialize for Columns<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let Columns(scan, place) = self;
         let mut map = serializer.serialize_map(None)?;
-        for column in of_fits().iter().filter(|column| column.json == *place) {
+        for column in of_fits(&[scan.outcome.model])
+            .iter()
+            .filter(|column| column.json == *place)
+        {
             let cell = column.cell(&Row::from(*scan));
             if *place == Json::Head || cell != Cell::Empty {
                 map.serialize_entry(&column.name, &cell)?;
@@ -81,9 +84,10 @@ struct Evaluations {
 
 fn document(scan: &FittedScan) -> Document<'_> {
     let outcome = &scan.outcome;
+    let parameters = |values: &Values| ByName::new(outcome.model, |place| values[place]);
     let minimum = |minimum: &Minimum| JsonMinimum {
         mse2: minimum.mse2,
-        parameters: by_name(minimum.params.to_array()),
+        parameters: parameters(&minimum.params),
         hits: minimum.hits,
         first_start: minimum.first_start,
     };
@@ -94,10 +98,10 @@ fn document(scan: &FittedScan) -> Document<'_> {
         notes: &scan.about.notes,
         left_out: &scan.left_out,
         found: Columns(scan, Json::Found),
-        parameters: by_name(outcome.params.to_array()),
+        parameters: parameters(&outcome.params),
         bounds: Columns(scan, Json::Bounds),
         selection: scan.choice.as_ref().map(selection),
-        uncertainty: known(&outcome.params, &outcome.uncertainty, &scan.derived),
+        uncertainty: known(&outcome.material(), &outcome.uncertainty, &scan.derived),
         derived: scan.derived.iter().map(at_angle).collect(),
         end: Columns(scan, Json::End),
         minima: outcome.minima.iter().map(minimum).collect(),

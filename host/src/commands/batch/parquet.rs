@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn reads_back() {
-        let columns = crate::commands::batch::run::columns();
+        let columns = crate::commands::batch::run::columns(&[crate::engine::Model::paper()]);
         // More rows than one group has, and each third failed.
         let count = GROUP + 3;
         let cell = |row: usize, (name, kind): &(String, Kind)| match (kind, row % 3) {

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
-use crate::engine::FitOptions;
+use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
 use crate::records::journal::Journal;
@@ -22,6 +22,8 @@ pub struct Job<'a> {
     pub files: &'a [PathBuf],
     /// How they are fitted.
     pub options: FitOptions,
+    /// The models that results can be of.
+    pub models: Vec<&'static Model>,
     /// How they are read.
     pub read: &'a ReadOptions,
     /// What is kept.
@@ -67,6 +69,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fi
         }
         Some(match fit(&measurement, &job.options) {
             Ok(scan) => fitted(job, scan, &measurement),
+            Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
         })
     };
@@ -82,7 +85,7 @@ fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> Fitted 
     scan.elapsed = None;
     let row = match job.rows {
         Rows::Objects => Row::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
-        Rows::Cells => Row::Cells(cells(|column| column.cell(&(&scan).into()), Cell::Empty)),
+        Rows::Cells => Row::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),
     };
     Fitted {
         row,
@@ -114,7 +117,7 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
                 "scan" => scan.map_or(Cell::Empty, |scan| Cell::Text(scan.to_string())),
                 _ => Cell::Empty,
             };
-            Row::Cells(cells(known, Cell::Text(error.to_string())))
+            Row::Cells(cells(&job.models, known, Cell::Text(error.to_string())))
         }
     };
     Fitted {
@@ -124,17 +127,19 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
 }
 
 /// The columns of a table of results: those of a fit without its time, and why there is none.
-pub fn columns() -> Vec<(String, Kind)> {
-    let mut columns: Vec<_> = timeless().map(|column| (column.name.clone(), column.kind())).collect();
+pub fn columns(models: &[&Model]) -> Vec<(String, Kind)> {
+    let mut columns: Vec<_> = timeless(models)
+        .map(|column| (column.name.clone(), column.kind()))
+        .collect();
     columns.push(("error".into(), Kind::Text));
     columns
 }
 
 /// A row of these.
-fn cells(of: impl Fn(&Column) -> Cell, error: Cell) -> Vec<Cell> {
-    timeless().map(|column| of(&column)).chain([error]).collect()
+fn cells(models: &[&Model], of: impl Fn(&Column) -> Cell, error: Cell) -> Vec<Cell> {
+    timeless(models).map(|column| of(&column)).chain([error]).collect()
 }
 
-fn timeless() -> impl Iterator<Item = Column> {
-    of_fits().into_iter().filter(|column| column.json != Json::Time)
+fn timeless(models: &[&Model]) -> impl Iterator<Item = Column> {
+    of_fits(models).into_iter().filter(|column| column.json != Json::Time)
 }

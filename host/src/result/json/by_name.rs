@@ -1,14 +1,18 @@
-//! Values of parameters as an object, in the order of the parameters.
+//! A value for each parameter, by name.
 
-use brdfit_core::brdf::NAMES;
 use serde::{Serialize, Serializer};
 
-/// One member a parameter.
+use crate::engine::Model;
+
+/// One value for each parameter of a model, in their order.
 pub struct ByName<T>(Vec<(&'static str, T)>);
 
-/// Of values in the order of [`NAMES`].
-pub fn by_name<T>(values: [T; 6]) -> ByName<T> {
-    ByName(NAMES.into_iter().zip(values).collect())
+impl<T> ByName<T> {
+    /// The function of each place.
+    pub fn new(model: &Model, of: impl Fn(usize) -> T) -> Self {
+        let each = model.parameters.iter().enumerate();
+        ByName(each.map(|(place, parameter)| (parameter.name, of(place))).collect())
+    }
 }
 
 impl<T: Serialize> Serialize for ByName<T> {

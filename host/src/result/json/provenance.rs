@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::by_name::{ByName, by_name};
+use super::by_name::ByName;
 use crate::engine::FitOptions;
 use crate::input::source::Source;
 use crate::input::{About, ReadOptions};
@@ -36,13 +36,10 @@ pub fn provenance<'a>(about: &'a About, options: Option<&FitOptions>) -> Provena
         brdfit: env!("CARGO_PKG_VERSION"),
         files: &about.sources,
         read_options: changed(&about.asked),
-        search: options.map(|options| {
-            let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
-            Search {
-                precision: names::precision(options.precision),
-                robust: options.robust,
-                bounds: by_name(std::array::from_fn(|index| [lower[index], upper[index]])),
-            }
+        search: options.map(|options| Search {
+            precision: names::precision(options.precision),
+            robust: options.robust,
+            bounds: ByName::new(options.model, |place| [options.lower[place], options.upper[place]]),
         }),
     }
 }

@@ -12,7 +12,7 @@
 //! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
 //! | [`result`](mod@result) | a fitted scan as text, JSON or CSV |
 //! | [`records`] | fitted files kept one by one: finished fits, parts of a batch |
-//! | [`plot`] | figures as SVG and PNG, from plain data |
+//! | [`plot`] | figures as SVG, from plain data |
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
 //! | [`options`] | the options that several commands have |

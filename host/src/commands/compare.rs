@@ -33,7 +33,7 @@ pub struct Arguments {
     seed: u64,
     #[command(flatten)]
     output: OutputArguments,
-    /// Draws every model's best fit over the data, as SVG or PNG
+    /// Draws every model's best fit over the data, as SVG, or as PNG if brdfit is built with it
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]

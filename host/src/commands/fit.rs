@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Adds the time of each search to JSON and CSV, which are then not the same in each run
     #[arg(long)]
     time: bool,
-    /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
+    /// Draws the scan with its distinct minima, as SVG, or as PNG if brdfit is built with it; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]

@@ -9,6 +9,7 @@ pub mod bytes;
 mod channel;
 pub mod check;
 pub mod columns;
+mod cut;
 mod direction;
 mod doubt;
 mod facts;
@@ -186,6 +187,7 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
         options.refuse_for(scan.about.kind, format)?;
     }
     let mut scans = raw::select(scans, &options.column)?;
+    cut::suspect(format, bytes, &mut scans);
     for scan in &mut scans {
         scan.about.sources.push(Source::new(file, bytes));
         scan.about.asked = options.clone();

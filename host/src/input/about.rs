@@ -29,6 +29,8 @@ pub struct About {
     pub sigma_ln: Option<f64>,
     /// What was done to the numbers, such as angles of a full turn that became negative.
     pub notes: Vec<String>,
+    /// What may be wrong with the file; this is among the notes too.
+    pub doubts: Vec<String>,
     /// The files of the scan, in order.
     pub sources: Vec<Source>,
     /// What the user said about them.
@@ -53,6 +55,7 @@ impl Default for About {
             divisor: 1.0,
             sigma_ln: None,
             notes: Vec::new(),
+            doubts: Vec::new(),
             sources: Vec::new(),
             asked: ReadOptions::default(),
         }

@@ -6,6 +6,7 @@ use super::head::{Head, plain};
 use super::role::{self, Role};
 use super::units::Quantity;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// What a column is said to hold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -64,7 +65,7 @@ pub fn place(column: &str, heads: &[Head], option: &str) -> Result<usize, Error>
         Err(Error::new(what).help(format!(
             "{option} takes the numbers 1 to {} or the names of columns: {}",
             heads.len(),
-            names.join(", ")
+            some_of(&names)
         )))
     };
     if let Ok(number) = column.parse::<usize>() {

@@ -155,5 +155,5 @@ fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
             ln_f: plot::of(&outcome.material()),
         })
         .collect();
-    plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)
+    plot::overlay_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &lines)
 }

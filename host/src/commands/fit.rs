@@ -112,7 +112,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             picture,
-            &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
+            &plot::scan_svg(
+                &measurement.label(),
+                &plot::Drawn::of_fit(measurement, &report.outcome).data(),
+                &curves,
+            ),
         )?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;

@@ -11,6 +11,7 @@ use serde::{Serialize, Serializer};
 use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
+use crate::analysis::hints::Hint;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::output;
@@ -43,6 +44,9 @@ struct Document<'a> {
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
     evaluations: Evaluations,
+    /// What a person would say.
+    #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
+    hints: &'a [Hint],
     provenance: Provenance<'a>,
     #[serde(flatten)]
     time: Columns<'a>,
@@ -109,6 +113,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
+        hints: &scan.hints,
         provenance: provenance(&scan.about, Some(&scan.options)),
         time: Columns(scan, Json::Time),
     }

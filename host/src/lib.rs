@@ -11,6 +11,7 @@
 //! | [`input`] | a file becomes one or more [`input::Measurement`]s |
 //! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
 //! | [`result`](mod@result) | a fitted scan as text, JSON or CSV |
+//! | [`records`] | fitted files kept one by one: finished fits, parts of a batch |
 //! | [`plot`] | figures as SVG, from plain data |
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
@@ -38,6 +39,7 @@ pub mod page;
 pub mod parameters;
 pub mod plain;
 pub mod plot;
+pub mod records;
 pub mod result;
 pub mod streams;
 pub mod target;

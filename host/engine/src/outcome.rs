@@ -63,6 +63,8 @@ pub enum FitError {
     TooFew(usize, usize),
     /// No compiled set has these terms.
     Terms(u8),
+    /// The fit was no longer wanted: see [`crate::Until`].
+    Interrupted,
 }
 
 impl Outcome {
@@ -93,6 +95,7 @@ impl std::fmt::Display for FitError {
                 write!(f, "{samples} samples cannot determine {parameters} parameters")
             }
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
+            FitError::Interrupted => f.write_str("interrupted"),
         }
     }
 }

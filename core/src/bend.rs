@@ -81,12 +81,12 @@ pub(crate) fn bend<R: Real, const P: usize>(
             *value += more;
         }
     }
-    let from = Index::new(old_n, old_kappa2).reflect::<2, true>(peaks);
+    let from = Index::new(old_n, old_kappa2).reflect(peaks, true);
     let (new_n, new_kappa2) = (
         at(&bent, n, R::ONE).max(R::ONE),
         at(&bent, kappa2, R::ZERO).max(R::ZERO),
     );
-    let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
+    let there = Index::new(new_n, new_kappa2).reflect(peaks, false);
     let d_n2 = R::of(2.0) * old_n * d_n;
     for (place, lobe) in weights {
         // So the compiler sees that no index is out of range.

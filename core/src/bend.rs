@@ -13,13 +13,13 @@ pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2:
         let (Some(tan2), Some(cos)) = (block.columns.get(tan2), block.columns.get(cos)) else {
             continue;
         };
-        for (lane, weight) in block.weight.iter().enumerate() {
-            let mut tan2 = tan2[lane];
-            if !(*weight > R::ZERO) {
+        for (&weight, (&tan2, &cos)) in block.weight.iter().zip(tan2.iter().zip(cos)) {
+            let mut tan2 = tan2;
+            if !(weight > R::ZERO) {
                 continue;
             }
             if tan2 < nearest[0] {
-                cos_theta_d = cos[lane];
+                cos_theta_d = cos;
             }
             for place in &mut nearest {
                 if tan2 < *place {

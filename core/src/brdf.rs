@@ -357,13 +357,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
 
     /// F of each lobe from place `from` on and of each lane; `KP` is `G` times the number of pairs of facet angles.
     #[inline(always)]
-    fn reflect<
-        const K: usize,
-        const KP: usize,
-        const G: usize,
-        const L: usize,
-        const C: usize,
-    >(
+    fn reflect<const K: usize, const KP: usize, const G: usize, const L: usize, const C: usize>(
         &self,
         block: &Block<R, L, C>,
         from: usize,

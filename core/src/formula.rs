@@ -219,7 +219,13 @@ impl<R: Real, F: Formula<P>, const P: usize> Model<R, P, COLUMNS> for Own<F> {
         let f = f.max(R::TINY);
         *row = match want {
             // As f is linear in the weights, its derivatives by these.
-            Want::Columns => core::array::from_fn(|k| if F::PARAMETERS[k].is_weight() { slopes[k] } else { R::ZERO }),
+            Want::Columns => core::array::from_fn(|k| {
+                if F::PARAMETERS[k].is_weight() {
+                    slopes[k]
+                } else {
+                    R::ZERO
+                }
+            }),
             _ => slopes.map(|slope| slope / f * block.weight[lane % L]),
         };
         f.ln()

@@ -178,7 +178,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
-            return self.sums_alone(x, Want::Value).cost;
+            return self.scalar_cost(x);
         }
         let pass = M::pass(x);
         let mut squares = [R::ZERO; SUMS];
@@ -197,7 +197,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         if ALONE {
-            return self.sums_alone(x, Want::Gradient);
+            return self.scalar_linearize(x);
         }
         let pass = M::pass(x);
         let mut squares = Aligned([R::ZERO; SUMS]);

@@ -1,4 +1,4 @@
-//! Passes where lanes do not go side by side: row after row, and one partial sum after the other, so that few are in memory.
+//! Passes where lanes do not go side by side: row after row, and one partial sum after the other, so that few are in memory; the same bits from less code.
 //!
 //! One code makes all passes, whatever they sum: the row takes most of it.
 
@@ -12,8 +12,18 @@ use crate::residuals::Residuals;
 const PARTS: usize = SUMS.ilog2() as usize + 1;
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
+    /// [`crate::lm::Problem::cost`], one lane after the other.
+    pub fn scalar_cost(&self, x: &[R; P]) -> R {
+        self.scalar_sums(x, Want::Value).cost
+    }
+
+    /// [`crate::lm::Problem::linearize`], one lane after the other.
+    pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        self.scalar_sums(x, Want::Gradient)
+    }
+
     /// The sums over all rows, in the order of [`crate::residuals::total`]: of the squares of the residuals; with these J'r and J'J; or the normal equations of the weights (`candidate.rs`).
-    pub(crate) fn sums_alone(&self, x: &[R; P], want: Want) -> Linearization<R, P> {
+    pub(crate) fn scalar_sums(&self, x: &[R; P], want: Want) -> Linearization<R, P> {
         let pass = M::pass(x);
         let columns = match want {
             Want::Value => 0,
@@ -52,7 +62,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         for block in self.blocks() {
             let mut residuals = [R::ZERO; GROUP];
             for (half, (residual, row)) in residuals.iter_mut().zip(&mut rows).enumerate() {
-                *residual = Self::row_alone(pass, block, (lane + half * SUMS) % LANES, want, row);
+                *residual = Self::scalar_row(pass, block, (lane + half * SUMS) % LANES, want, row);
             }
             sums.cost += residuals[0] * residuals[0] + residuals[1] * residuals[1];
             if want != Want::Value {
@@ -63,13 +73,13 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
     /// Residual of one lane, and its derivatives if they are wanted; or what the weights are fitted by.
     #[inline(always)]
-    fn row_alone(pass: &M::Pass, block: &Block<R, LANES, C>, lane: usize, want: Want, row: &mut [R; P]) -> R {
+    fn scalar_row(pass: &M::Pass, block: &Block<R, LANES, C>, lane: usize, want: Want, row: &mut [R; P]) -> R {
         let ln_f = M::row(pass, block, lane, want, row);
         let weight = block.weight[lane];
         if want == Want::Columns {
             let unit = weight * (-block.ln_f[lane]).exp();
             for column in row.iter_mut().take(Self::WEIGHTS_END) {
-                *column = *column * unit;
+                *column *= unit;
             }
             return weight;
         }
@@ -98,7 +108,8 @@ fn add_rows<R: Real, const P: usize>(
 fn add<R: Real, const P: usize>(sums: &mut Linearization<R, P>, part: &Linearization<R, P>, columns: usize) {
     sums.cost += part.cost;
     let lines = sums.gradient.iter_mut().zip(&mut sums.hessian);
-    for ((gradient, line), (&of_gradient, of_line)) in lines.zip(part.gradient.iter().zip(&part.hessian)).take(columns) {
+    for ((gradient, line), (&of_gradient, of_line)) in lines.zip(part.gradient.iter().zip(&part.hessian)).take(columns)
+    {
         *gradient += of_gradient;
         for (sum, &of_sum) in line.iter_mut().zip(of_line) {
             *sum += of_sum;

@@ -259,19 +259,6 @@ impl<R: Real, const L: usize, const C: usize> Block<R, L, C> {
             self.weight[lane] = observation.weight;
         }
     }
-
-    /// One lane as a block of its own.
-    pub(crate) fn lane(&self, lane: usize) -> Block<R, 1, C> {
-        // So the compiler sees that no index is out of range.
-        let lane = lane % L;
-        let mut one = Block::EMPTY;
-        for (column, from) in one.columns.iter_mut().zip(&self.columns) {
-            column[0] = from[lane];
-        }
-        one.ln_f = [self.ln_f[lane]];
-        one.weight = [self.weight[lane]];
-        one
-    }
 }
 
 impl<R: Real, const C: usize> Block<R, 1, C> {

@@ -378,7 +378,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
     /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives; `K` is `G` times the number of lobes.
     ///
     /// With t = tan^2 theta_h / m^2, f = rho_d/pi + sum over lobes of rho F factor g(t) / m^2.
-    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
+    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is outside the range of this type.
     #[inline(always)]
     pub(crate) fn write<
         const K: usize,

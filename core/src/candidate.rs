@@ -1,4 +1,4 @@
-//! Good starts for a scan: what is no weight spread evenly, and the weights that fit best there.
+//! Good starts for a scan: parameters that are not weights spread evenly, and the weights that fit best there.
 
 use crate::boxqp;
 use crate::lm::{Bounds, Linearization};
@@ -10,7 +10,7 @@ use crate::search::{Candidate, Scene};
 use crate::start;
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for Residuals<'_, R, M, P, C> {
-    /// Candidate `i`: what is no weight spread over the ranges that the model gives, then the weights that fit best.
+    /// Candidate `i`: parameters that are not weights spread over the ranges that the model gives, then the weights that fit best.
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.inlined_candidate(bounds, seed, i, like)
     }
@@ -144,7 +144,7 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
     false
 }
 
-/// Sets what is no weight to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
+/// Sets the parameters that are not weights to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
 fn spread<R: Real, const P: usize>(
     x: &mut [R; P],
     parameters: &[Parameter; P],

@@ -34,7 +34,7 @@ impl<R: Real> Sample<R> {
     }
 }
 
-/// Why a [`Sample`] is no valid [`Observation`].
+/// Why a [`Sample`] is not a valid [`Observation`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SampleError {

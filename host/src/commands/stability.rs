@@ -16,7 +16,7 @@ use crate::parameters::model;
 use crate::streams::Streams;
 use crate::terms::terms;
 
-/// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
+/// Shows what rounding does to the fit of a scan, or to built-in stiff and extreme cases
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  brdfit stability paint.csv")]
 pub struct Arguments {
@@ -38,7 +38,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// The scan can not be read or fitted, or the output not written.
+/// The scan cannot be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {

@@ -127,7 +127,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
         if !angle.is_finite() {
-            return invalid(column, format!("{name} is {angle}, which is no angle"));
+            return invalid(column, format!("{name} is {angle}, which is not an angle"));
         }
     }
     let mut sample = Sample {
@@ -231,7 +231,7 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     let sigma = match known {
         Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
         Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
-        Weight::Factor(factor) => return Err(format!("the weight is {factor}, which is none")),
+        Weight::Factor(factor) => return Err(format!("the weight is {factor}, and must be a number from 0 on")),
         Weight::RelativeSigma(sigma) => sigma,
         Weight::Sigma(sigma) => match quantity.is_logarithm() {
             Some(factor) => sigma * factor,

@@ -33,7 +33,7 @@ pub struct Panel {
 pub struct Line {
     /// For the legend.
     pub label: String,
-    /// A colour of [`COLOURS`].
+    /// Its colour: 0 for orange, 1 for blue.
     pub colour: usize,
     /// Drawn in dashes.
     pub dashed: bool,

@@ -57,7 +57,7 @@ pub struct LobesRow {
     pub masking: String,
     /// theta_i, theta_s, delta_phi in radians.
     pub angles: [f64; 3],
-    /// In the order of [`brdfit_core::composed::NAMES`].
+    /// In the order rho_d, rho_s, rho_v, m, n, kappa, m_v, rho_2, m_2.
     pub params: [f64; 9],
     /// ln f, and its derivatives by the parameters.
     pub values: [f64; 10],

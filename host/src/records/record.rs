@@ -130,7 +130,7 @@ pub fn line(value: &impl Serialize) -> String {
     format!("{:016x} {json}\n", fingerprint(json.as_bytes()))
 }
 
-/// What [`line`] wrote; `None` if any byte of the line, or its end, is not as it was written.
+/// What [`line()`] wrote; `None` if any byte of the line, or its end, is not as it was written.
 pub fn of_line<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
     let (sum, json) = line.strip_suffix(b"\n")?.split_at_checked(16)?;
     let json = json.strip_prefix(b" ")?;

@@ -9,6 +9,7 @@ use super::uncertainty::{self, WeightKind};
 use super::unit::Unit;
 use super::units::{Angles, Quantity, ValueUnit};
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// Where the columns of a scan are, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -301,7 +302,7 @@ impl Finder<'_> {
                 shown(&head.text)
             )
         });
-        Error::new(format!("no column {quantity} among the columns {}{foreign}", found.join(", "))).help(format!(
+        Error::new(format!("no column {quantity} among the columns {}{foreign}", some_of(&found))).help(format!(
             "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
         ))
     }

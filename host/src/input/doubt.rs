@@ -4,6 +4,7 @@ use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
 use crate::error::Error;
+use crate::number::shortest;
 
 /// Half a right angle in radians is less than this, and no scan in degrees is so narrow without a reason.
 const RIGHT_ANGLE: f64 = 1.6;
@@ -51,7 +52,8 @@ fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
     };
     match unit {
         Angles::Deg if scan.rows.len() > 2 && polar > 0.0 && polar <= RIGHT_ANGLE => Err(at(Error::new(format!(
-            "all angles are within {polar} degrees; are they radians?"
+            "all angles are within {} degrees; are they radians?",
+            shortest(polar)
         ))
         .help("say --angles rad if they are, and --angles deg if not"))),
         Angles::Rad if polar > RIGHT_ANGLE && polar <= 180.0 => Err(at(Error::new(format!(
@@ -108,7 +110,9 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
     }
     let beyond = |row: &&Row| degrees(row.theta_s).abs() > 90.0;
     let error = Error::new(format!(
-        "theta_s goes from {low} to {high} degrees, over more than half a turn, as azimuths do"
+        "theta_s goes from {} to {} degrees, over more than half a turn, as azimuths do",
+        shortest(low),
+        shortest(high)
     ))
     .help("if these are azimuths, name the columns with --columns phi_s=...,theta_s=...; if they are of light that goes through the sample too, leave its rows out of the file");
     let line = angles().find(beyond).map_or(0, |row| row.line);

@@ -1,11 +1,14 @@
 //! What a column holds, by the words of its name.
 
+use serde::Serialize;
+
 use super::head::Head;
 use super::unit::Unit;
 use super::units::Quantity;
 
 /// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     /// Angle of incidence.
     ThetaI,
@@ -40,7 +43,8 @@ pub enum Role {
 }
 
 /// What an unknown column may be, to judge by its name and unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Look {
     /// An angle or azimuth.
     Angle,

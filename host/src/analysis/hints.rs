@@ -137,7 +137,7 @@ fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, 
 /// How many samples beside the brightest one of an angle of incidence a robust fit left out with it, and that angle in degrees.
 fn brightest_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usize, f64)> {
     // A few outliers side by side happen; a lobe has more samples.
-    const RUN: usize = 5;
+    const RUN: usize = 6;
     let outliers = &outcome.robust.as_ref()?.outliers;
     let is_out = |sample: &Sample<f64>| outliers.iter().any(|&place| std::ptr::eq(&samples[place], sample));
     let runs = plane::by_angle(samples).into_iter().filter_map(|(theta_i, mut group)| {
@@ -147,11 +147,25 @@ fn brightest_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usi
             angle(a).total_cmp(&angle(b))
         });
         let peak = (0..group.len()).max_by(|&a, &b| group[a].brdf.total_cmp(&group[b].brdf))?;
-        let before = group[..peak].iter().rev().take_while(|sample| is_out(sample)).count();
-        let after = group[peak..].iter().take_while(|sample| is_out(sample)).count();
-        (after > 0 && before + after >= RUN).then_some((before + after, (theta_i.to_degrees() * 1e4).round() / 1e4))
+        let before = run(group[..peak].iter().rev().map(|sample| is_out(sample)));
+        let after = run(group[peak..].iter().map(|sample| is_out(sample)));
+        (is_out(group[peak]) && before + after >= RUN)
+            .then_some((before + after, (theta_i.to_degrees() * 1e4).round() / 1e4))
     });
     runs.max_by_key(|(count, _)| *count)
+}
+
+/// How many are left out before two that follow each other are kept.
+fn run(left_out: impl Iterator<Item = bool>) -> usize {
+    let (mut count, mut kept) = (0, 0);
+    for is_out in left_out {
+        kept = if is_out { 0 } else { kept + 1 };
+        if kept == 2 {
+            break;
+        }
+        count += usize::from(is_out);
+    }
+    count
 }
 
 /// The median; NaN of nothing.

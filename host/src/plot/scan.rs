@@ -15,6 +15,8 @@ use crate::engine::Material;
 const OTHERS: usize = 24;
 /// How far a thin line may be from the model, pixels.
 const OTHERS_TRUE_TO: f64 = 0.25;
+/// Width of a letter of the legend, pixels.
+const LETTER: f64 = 6.7;
 /// Height of the title and the legend, pixels.
 const TOP: f64 = 80.0;
 
@@ -46,6 +48,13 @@ fn legend(out: &mut String, data: &Data, curves: &[Material]) {
     svg::dots(out, [0.0, 9.0, 18.0].map(|dx| (LEFT + 5.0 + dx, y - 4.0)).into_iter());
     let mut at = LEFT + 32.0;
     let mut entries = vec![(measured, 0)];
+    if data.left_out_count > 0 {
+        let drawn = match (data.left_out.len(), data.left_out_count) {
+            (drawn, all) if drawn < all => format!("left out ({all}, shown {drawn})"),
+            (_, all) => format!("left out ({all})"),
+        };
+        entries.push((drawn, 3));
+    }
     if let Some((best, others)) = curves.split_first() {
         let mse = format!("MSE{}", svg::sup("2"));
         let error = svg::number(mse2(&of(best), samples));
@@ -62,13 +71,6 @@ fn legend(out: &mut String, data: &Data, curves: &[Material]) {
             entries.push((text, 2));
         }
     }
-    if data.left_out_count > 0 {
-        let drawn = match (data.left_out.len(), data.left_out_count) {
-            (drawn, all) if drawn < all => format!("left out ({all}, shown {drawn})"),
-            (_, all) => format!("left out ({all})"),
-        };
-        entries.push((drawn, 3));
-    }
     for (text, kind) in entries {
         if kind == 3 {
             svg::crosses(out, std::iter::once((at + 4.0, y - 4.0)));
@@ -79,7 +81,7 @@ fn legend(out: &mut String, data: &Data, curves: &[Material]) {
             at += 34.0;
         }
         svg::text(out, at, y, svg::INK, &text);
-        at += 7.7 * svg::letters(&text) as f64 + 22.0;
+        at += LETTER * svg::letters(&text) as f64 + 18.0;
     }
     out.push_str("</g>");
     if let Some(best) = curves.first() {

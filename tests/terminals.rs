@@ -154,10 +154,10 @@ fn results_that_name_no_file_are_refused() {
     for named in ["/dev/zero", fifo.to_str().unwrap()] {
         let json = format!("{{\"file\": \"{named}\", \"scan\": null, \"parameters\": {parameters}}}");
         let results = write(&folder, "results.json", json);
-        assert!(fail(&["report", &results]).contains("this is no file"));
+        assert!(fail(&["report", &results]).contains("this is not a file"));
         let csv = format!("file,scan,rho_d,rho_s,rho_v,m,n,kappa,error\n{named},,0.1,0,0,0.1,1.5,0,\n");
         let results = write(&folder, "results.csv", csv);
-        assert!(fail(&["report", &results]).contains("this is no file"));
+        assert!(fail(&["report", &results]).contains("this is not a file"));
     }
     assert!(fail(&["fit", "/dev/zero"]).contains("this is a device"));
     fs::remove_file(fifo).unwrap();

@@ -220,7 +220,7 @@ fn measured(
         .collect()
 }
 
-/// Says of a scan that can not be fitted what to do, and names the line instead of the sample.
+/// Says of a scan that cannot be fitted what to do, and names the line instead of the sample.
 pub fn explain(measurement: &Measurement, error: FitError) -> Error {
     let plain = Error::new(error.to_string()).in_file(measurement.label());
     match error {

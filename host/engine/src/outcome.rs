@@ -1,4 +1,4 @@
-//! What a fit gives, or why there is none.
+//! What a fit gives, or why it failed.
 
 use brdfit_core::geometry::SampleError;
 use brdfit_core::lm::Stop;
@@ -92,7 +92,7 @@ impl std::fmt::Display for FitError {
         match self {
             FitError::Sample(index, error) => write!(f, "sample {}: {error}", index + 1),
             FitError::TooFew(samples, parameters) => {
-                write!(f, "{samples} samples can not determine {parameters} parameters")
+                write!(f, "{samples} samples cannot determine {parameters} parameters")
             }
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
             FitError::Interrupted => f.write_str("interrupted"),

@@ -34,7 +34,7 @@ use summary::Summary;
 /// Fits many scans; keeps what is done when interrupted
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
+    after_help = "A scan that cannot be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
 )]
 pub struct Arguments {
     /// Scans, folders of scans, patterns in quotes, or @LIST, a file of names (@- is standard input)
@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         // If standard error is closed, the results are right all the same.
         let _ = writeln!(
             streams.errors,
-            "{}:{line}: this is no whole record; the fit that it may have been of is made again",
+            "{}:{line}: this record is not whole; its fit is made again",
             journal.path.display()
         );
     }

@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
         each.map(|Subject { measurement, stored }| {
             let section = Section::new(measurement, &options)?;
             if let Some(stored) = stored {
-                results::agree(&section.label, &section.report.outcome.material(), stored)?;
+                results::agree(&section.label, &section.fit.outcome.material(), stored)?;
             }
             Ok(section)
         })
@@ -108,7 +108,7 @@ fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>
 /// The scans that results name; those without a fit are left out, and standard error is told.
 fn of_results(
     name: &str,
-    fitted: Vec<results::Fitted>,
+    fitted: Vec<results::StoredFit>,
     arguments: &Arguments,
     streams: &mut Streams,
 ) -> Result<Vec<Subject>, Error> {
@@ -128,9 +128,9 @@ fn of_results(
         let all = match files.entry(one.file) {
             Entry::Occupied(read) => read.into_mut(),
             Entry::Vacant(place) => {
-                // What a file of results says is no word of the user's, and a pipe would be waited for.
+                // A file of results may name anything; reading a pipe would wait for ever.
                 if place.key().metadata().is_ok_and(|there| !there.is_file()) {
-                    return Err(Error::new("this is no file")
+                    return Err(Error::new("this is not a file")
                         .in_file(file)
                         .help(format!("{name} names it; give the results of scans in files")));
                 }

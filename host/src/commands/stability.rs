@@ -18,7 +18,7 @@ use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;
 use crate::terms::terms;
 
-/// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
+/// Shows what rounding does to the fit of a scan, or to built-in stiff and extreme cases
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  brdfit stability paint.csv")]
 pub struct Arguments {
@@ -48,7 +48,7 @@ struct Document<'a> {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// The scan can not be read or fitted, or the output not written.
+/// The scan cannot be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {

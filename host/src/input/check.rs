@@ -13,7 +13,7 @@ use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight;
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 
 /// The measurement in a scan of `file`.
 ///
@@ -128,7 +128,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
         if !angle.is_finite() {
-            return invalid(column, format!("{name} is {}, which is no angle", shortest(angle)));
+            return invalid(column, format!("{name} is {}, which is not an angle", shortest(angle)));
         }
     }
     let mut sample = Sample {
@@ -235,7 +235,12 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     let sigma = match known {
         Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
         Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
-        Weight::Factor(factor) => return Err(format!("the weight is {}, which is none", shortest(factor))),
+        Weight::Factor(factor) => {
+            return Err(format!(
+                "the weight is {}, and must be a number from 0 on",
+                shortest(factor)
+            ));
+        }
         Weight::RelativeSigma(sigma) => sigma,
         Weight::Sigma(sigma) => match quantity.is_logarithm() {
             Some(factor) => sigma * factor,

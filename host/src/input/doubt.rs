@@ -4,7 +4,7 @@ use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 
 /// Half a right angle in radians is less than this, and no scan in degrees is so narrow without a reason.
 const RIGHT_ANGLE: f64 = 1.6;

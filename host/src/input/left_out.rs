@@ -6,7 +6,7 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::Measurement;
-use crate::output::shortest;
+use crate::number::shortest;
 
 /// Why a row was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]

@@ -8,7 +8,7 @@ use crate::plain::plain;
 pub fn command(given: &[OsString]) -> String {
     let words = given.iter().skip(1).map(|word| {
         let word = word.to_string_lossy();
-        // Only a NUL can not be quoted, and no system passes one in an argument.
+        // Only a NUL cannot be quoted, and no system passes one in an argument.
         shlex::try_quote(&word).map_or_else(|_| word.to_string(), |quoted| quoted.to_string())
     });
     std::iter::once("brdfit".to_string())

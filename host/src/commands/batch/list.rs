@@ -10,7 +10,7 @@ use crate::records::own;
 
 /// The files that the arguments name, in their order, each once: what a folder or a pattern stands for is sorted by name.
 ///
-/// Results, parts and finished fits of batches to `out` are no scans, even if they are in a folder or match a pattern.
+/// Results, parts and finished fits of batches to `out` are not scans, even if they are in a folder or match a pattern.
 ///
 /// # Errors
 /// A name that stands for no file, or a folder that cannot be listed.
@@ -21,7 +21,7 @@ pub fn files(arguments: &[PathBuf], out: &Path, input: &mut dyn Read) -> Result<
         if let Some(list) = name(argument) {
             all.extend(listed(list, input)?);
         } else if text == STDIN {
-            return Err(Error::new("- alone stands for no scans").help("give a list of files on standard input as @-"));
+            return Err(Error::new("- alone does not name scans").help("give a list of files on standard input as @-"));
         } else if argument.is_dir() {
             all.extend(folder(argument, out)?);
         } else if argument.exists() || !text.contains(['*', '?', '[']) {
@@ -53,7 +53,7 @@ fn listed(list: &Path, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
         bytes::of_file(list)?
     };
     let text = String::from_utf8(bytes).map_err(|_| {
-        Error::new("this is no list of file names")
+        Error::new("this is not a list of file names")
             .in_file(list.display().to_string())
             .help("write one name a line, in UTF-8")
     })?;
@@ -83,7 +83,7 @@ fn folder(path: &Path, out: &Path) -> Result<Vec<PathBuf>, Error> {
 fn matches(pattern: &str, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let fail =
         |what: String| Error::new(what).help("in a pattern, * ? [] stand for other characters, and ** for folders");
-    let paths = glob::glob(pattern).map_err(|error| fail(format!("'{}' is no pattern: {error}", shown(pattern))))?;
+    let paths = glob::glob(pattern).map_err(|error| fail(format!("'{}' is not a pattern: {error}", shown(pattern))))?;
     let mut files = Vec::new();
     for path in paths {
         let path = path.map_err(|error| unlisted(error.path(), error.error()))?;

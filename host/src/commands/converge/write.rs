@@ -5,7 +5,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
-use crate::output::{self, shortest, write_row};
+use crate::number::shortest;
+use crate::output::{self, write_row};
 use crate::result::json::provenance::Provenance;
 
 #[derive(Serialize)]
@@ -84,7 +85,7 @@ pub fn text(scans: &[ScanStudy], seeds: u32) -> String {
         if place > 0 {
             out.push('\n');
         }
-        // Writing to a String can not fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             out,
             "{}: {} samples, least MSE^2 {:.6e}; medians of {seeds} {}, one thread, fastest of {REPEATS} runs",

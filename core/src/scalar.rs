@@ -95,11 +95,16 @@ fn add_rows<R: Real, const P: usize>(
     residuals: &[R; GROUP],
     columns: usize,
 ) {
-    let lines = sums.gradient.iter_mut().zip(&mut sums.hessian);
-    for (i, ((gradient, line), (&x, &y))) in lines.zip(a.iter().zip(b)).take(columns).enumerate() {
-        *gradient += x * residuals[0] + y * residuals[1];
-        for (sum, (&u, &v)) in line.iter_mut().zip(a.iter().zip(b)).take(i + 1) {
-            *sum += x * u + y * v;
+    for i in 0..P {
+        if i >= columns {
+            break;
+        }
+        let (x, y) = (a[i], b[i]);
+        sums.gradient[i] += x * residuals[0] + y * residuals[1];
+        if let (Some(line), Some(u), Some(v)) = (sums.hessian[i].get_mut(..=i), a.get(..=i), b.get(..=i)) {
+            for (sum, (&u, &v)) in line.iter_mut().zip(u.iter().zip(v)) {
+                *sum += x * u + y * v;
+            }
         }
     }
 }

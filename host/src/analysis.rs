@@ -3,8 +3,10 @@
 pub mod bootstrap;
 pub mod choose;
 pub mod converge;
+pub mod criteria;
 pub mod derived;
 pub mod fit;
+pub mod joint;
 pub mod paper;
 pub mod paper_sets;
 pub mod profile;

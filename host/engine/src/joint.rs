@@ -127,6 +127,8 @@ fn together<const P: usize, const Q: usize>(
         cost: best.at.cost,
         separate: separate.iter().map(|fit| fit.1).sum(),
         samples,
-        parameters: problem.coordinates(),
+        parameters: (0..problem.coordinates())
+            .filter(|&k| bounds.lower[k] < bounds.upper[k])
+            .count(),
     }
 }

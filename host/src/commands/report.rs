@@ -56,7 +56,7 @@ struct Subject {
 /// # Errors
 /// The first thing that is wrong with options, files or a fit.
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
-    let options = arguments.search.fit_options()?;
+    let wanted = arguments.search.wanted()?;
     arguments.read.refuse_together("report")?;
     // Results name further files, which are inputs too.
     let target = |inputs: &[PathBuf]| output::target(arguments.output.as_deref(), inputs);
@@ -82,7 +82,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
                  source,
                  stored,
              }| {
-                let section = Section::new(measurement, source, &options)?;
+                let section = Section::new(measurement, source, &wanted)?;
                 if let Some(stored) = stored {
                     results::agree(&section.label, &section.report.outcome.material(), stored)?;
                 }

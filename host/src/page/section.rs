@@ -3,6 +3,7 @@
 use brdfit_core::geometry::Sample;
 
 use super::provenance::Source;
+use crate::analysis::choose::Wanted;
 use crate::analysis::derived::{self, Value};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
@@ -41,12 +42,12 @@ pub struct Figure {
 }
 
 impl Section {
-    /// Fits a scan by `options`, and by the paper's method if that is another.
+    /// Fits a scan with what is wanted, and by the paper's method if that is another.
     ///
     /// # Errors
     /// The scan can not be fitted.
-    pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
-        let report = fit(measurement, options)?;
+    pub fn new(measurement: &Measurement, source: &Source, wanted: &Wanted) -> Result<Section, Error> {
+        let report = fit(measurement, wanted)?;
         let samples = robust::kept(&measurement.samples, &report.outcome);
         let paper = FitOptions {
             method: Method::Paper,

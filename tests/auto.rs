@@ -9,8 +9,10 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// What is within another model: each of the second becomes the first in some place of its bounds.
-const WITHIN: [(&str, &[&str]); 6] = [
+const WITHIN: [(&str, &[&str]); 7] = [
     ("beckmann", &["beckmann-own-slope", "beckmann-second"]),
+    ("cook-torrance", &["beckmann", "beckmann-own-slope", "beckmann-second"]),
+    ("walter", &["ggx-smith"]),
     (
         "ggx",
         &["ggx-own-slope", "ggx-second", "hyper-cauchy", "hyper-cauchy-own-slope"],
@@ -18,7 +20,6 @@ const WITHIN: [(&str, &[&str]); 6] = [
     ("ggx-own-slope", &["hyper-cauchy-own-slope"]),
     ("hyper-cauchy", &["hyper-cauchy-own-slope"]),
     ("k-correlation", &["k-correlation-2"]),
-    ("beckmann-own-slope", &[]),
 ];
 
 /// Parameters with which each part of a model is plain to see.

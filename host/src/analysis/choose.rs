@@ -48,12 +48,14 @@ fn models(candidates: &[FitOptions]) -> Vec<&'static Model> {
     models
 }
 
-/// The same options with each set of terms that their bounds permit; one if the model has no terms.
+/// The same options with each set of terms that the model has and their bounds permit; one if it has none.
 pub fn sets(options: &FitOptions) -> Vec<FitOptions> {
-    if options.model.terms == 0 {
+    let all = options.model.terms;
+    if all == 0 {
         return vec![*options];
     }
-    let sets = SETS.iter().map(|&(terms, _)| FitOptions { terms, ..*options });
+    let sets = SETS.iter().filter(|&&(terms, _)| terms & !all == 0);
+    let sets = sets.map(|&(terms, _)| FitOptions { terms, ..*options });
     sets.filter(allowed).collect()
 }
 

@@ -177,7 +177,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
-            return self.cost_alone(x);
+            return self.scalar_cost(x);
         }
         let pass = M::pass(x);
         let mut squares = [R::ZERO; SUMS];
@@ -196,7 +196,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         if ALONE {
-            return self.linearize_alone(x);
+            return self.scalar_linearize(x);
         }
         let pass = M::pass(x);
         let mut squares = Aligned([R::ZERO; SUMS]);
@@ -240,7 +240,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
 /// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
-    fn cost_alone(&self, x: &[R; P]) -> R {
+    /// [`Problem::cost`], one lane after the other: the same bits from less code.
+    pub fn scalar_cost(&self, x: &[R; P]) -> R {
         let pass = M::pass(x);
         let mut squares = [R::ZERO; SUMS];
         for block in self.blocks {
@@ -252,7 +253,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         total(&squares)
     }
 
-    fn linearize_alone(&self, x: &[R; P]) -> Linearization<R, P> {
+    /// [`Problem::linearize`], one lane after the other.
+    pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let pass = M::pass(x);
         // In the order of `total`.
         let two = |lane| add(self.partial(&pass, lane), &self.partial(&pass, lane + 1));

@@ -6,6 +6,7 @@ pub mod converge;
 pub mod criteria;
 pub mod derived;
 pub mod fit;
+pub mod hints;
 pub mod joint;
 pub mod paper;
 pub mod paper_sets;

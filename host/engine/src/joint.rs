@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::compiled::Kernel;
 use crate::layout::Layout;
+use crate::search::single;
 use crate::{FitError, FitOptions, Values};
 
 /// Scans at most.
@@ -41,29 +42,15 @@ pub struct Fitted {
 /// # Errors
 /// The place of the scan that can not be fitted, and why.
 pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
-    let (compiled, options) = options.model.compiled(options).map_err(|error| (0, error))?;
-    (compiled.joint)(all, shared, &options)
+    let (model, mut options) = (options.model, *options);
+    model.hold(&mut options);
+    (model.whole.joint)(all, shared, &options)
 }
 
-/// Coordinates at most, with every parameter each scan's own: a model of six parameters needs less memory than the largest.
-const SMALL: usize = 6 * SCANS;
-const LARGE: usize = 10 * SCANS;
+/// Coordinates at most, with every parameter of the largest model each scan's own.
+const COORDINATES: usize = 8 * SCANS;
 
 pub(crate) fn run<const P: usize>(
-    scans: &[&Kernel<f64, P>],
-    own: &[Parameter; P],
-    shared: &[bool],
-    options: &FitOptions,
-    all: &[&[Sample<f64>]],
-) -> Fitted {
-    if P * scans.len() <= SMALL {
-        together::<P, SMALL>(scans, own, shared, options, all)
-    } else {
-        together::<P, LARGE>(scans, own, shared, options, all)
-    }
-}
-
-fn together<const P: usize, const Q: usize>(
     scans: &[&Kernel<f64, P>],
     own: &[Parameter; P],
     shared: &[bool],
@@ -76,15 +63,15 @@ fn together<const P: usize, const Q: usize>(
     let separate: Vec<([f64; P], f64)> = scans
         .par_iter()
         .map(|scan| {
-            let found = search(*scan, &one, options.seed, options.starts(), &lm);
+            let found = search(single(*scan), &one, options.seed, options.starts(), &lm);
             let best = found.minima.best().expect("a search makes at least one fit");
             (best.x, best.cost)
         })
         .collect();
     let is_shared: [bool; P] = layout.places.map(|place| shared[place]);
     let problem = Joint::new(scans, is_shared);
-    let bounds = problem.bounds::<f64, Q>(&one);
-    let mean: [f64; Q] = problem.join(separate.iter().map(|fit| fit.0));
+    let bounds = problem.bounds::<f64, COORDINATES>(&one);
+    let mean: [f64; COORDINATES] = problem.join(separate.iter().map(|fit| fit.0));
     let of_each = separate.iter().map(|(x, _)| {
         let mut start = mean;
         for k in (0..P).filter(|&k| is_shared[k]) {

@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{self, Bounds, Options, Stop};
 use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
-use brdfit_core::search::{self, Found};
+use brdfit_core::search::{self, Found, Scene};
 use rayon::prelude::*;
 
 use crate::compiled::Kernel;
@@ -67,6 +67,11 @@ pub(crate) fn descend_from<const P: usize>(
     Some((best.at.cost, layout.values(&best.x)))
 }
 
+/// A scene for one thread: searches are compiled for this type alone.
+pub(crate) fn single<'a, R, const P: usize>(scene: &'a Kernel<'a, R, P>) -> &'a (dyn Scene<R, P> + 'a) {
+    scene
+}
+
 /// The search of one scan; `exact` is the same scan in `f64`.
 pub(crate) fn run<R: Real, const P: usize>(
     scene: &Kernel<R, P>,
@@ -80,7 +85,7 @@ pub(crate) fn run<R: Real, const P: usize>(
     let lm = Options::default();
     let starts = options.starts();
     let found: Found<R, P> = match options.method {
-        Method::Default => search::search(scene, &bounds, options.seed, starts, &lm),
+        Method::Default => search::search(single(scene), &bounds, options.seed, starts, &lm),
         Method::Paper => {
             let fits: Vec<_> = (0..u64::from(starts))
                 .into_par_iter()

@@ -142,6 +142,8 @@ fn worst<R: Real, F: Formula<P>, const P: usize>(
                 // By an exponent, ln (1 + x) is right to the rounding of 1, not of x.
                 let whole = match F::PARAMETERS[k].role {
                     Role::Shape => 1.0,
+                    // A parameter that moves ln f by less than its rounding has no derivative worth a digit.
+                    _ if own[k] > 0.0 => R::EPSILON.f64() / own[k],
                     _ => 0.0,
                 };
                 let error = (gradient[k].f64() - slope).abs() / (unit * (slope.abs() + whole));

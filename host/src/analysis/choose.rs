@@ -1,21 +1,44 @@
 //! The model, and the set of its terms, that a scan supports: the least BIC of several candidates.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
+use brdfit_core::brdf::DIFFUSE;
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
 use crate::engine::robust::{self, Robust};
-use crate::engine::{self, FitError, FitOptions, Model, Outcome};
+use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until};
 
-/// The sets of terms in order of size, each with the one that it is tested against.
-pub const SETS: [(u8, Option<u8>); 5] = [
-    (DIFFUSE, None),
-    (DIFFUSE | SURFACE, Some(DIFFUSE)),
-    (DIFFUSE | SURFACE | ABSORBING, Some(DIFFUSE | SURFACE)),
-    (DIFFUSE | SURFACE | VOLUME, Some(DIFFUSE | SURFACE)),
-    (ALL, Some(DIFFUSE | SURFACE | ABSORBING)),
-];
+/// The compiled sets with a diffuse term, in order of size, each with the one that it is tested against.
+pub const SETS: [(u8, Option<u8>); 5] = {
+    let mut sets = [(0, None); 5];
+    let (mut found, mut k) = (0, 0);
+    while k < TERM_SETS.len() {
+        if TERM_SETS[k] & DIFFUSE != 0 {
+            sets[found] = (TERM_SETS[k], tested_against(TERM_SETS[k]));
+            found += 1;
+        }
+        k += 1;
+    }
+    assert!(found == sets.len());
+    sets
+};
+
+/// The first of the largest sets with a diffuse term that a set adds terms to.
+const fn tested_against(terms: u8) -> Option<u8> {
+    let (mut best, mut k) = (None, 0);
+    while k < TERM_SETS.len() {
+        let set = TERM_SETS[k];
+        let larger = match best {
+            None => true,
+            Some(best) => set.count_ones() > u8::count_ones(best),
+        };
+        if set & DIFFUSE != 0 && set & terms == set && set != terms && larger {
+            best = Some(set);
+        }
+        k += 1;
+    }
+    best
+}
 
 /// What a scan is to be fitted with.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +61,15 @@ impl Wanted {
     /// The models of the candidates, each once.
     pub fn models(&self) -> Vec<&'static Model> {
         models(self.candidates())
+    }
+
+    /// The same, given up when `until` says so.
+    pub fn until(&self, until: Until) -> Wanted {
+        let with = |options: &FitOptions| FitOptions { until, ..*options };
+        match self {
+            Wanted::One(options) => Wanted::One(with(options)),
+            Wanted::Best(list) => Wanted::Best(list.iter().map(with).collect()),
+        }
     }
 }
 
@@ -206,4 +238,24 @@ pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, Fi
     let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
     let place = place.ok_or(FitError::Terms(0))?;
     Ok(Choice { candidates, place })
+}
+
+#[cfg(test)]
+mod tests {
+    use brdfit_core::brdf::{ABSORBING, ALL, SURFACE, VOLUME};
+
+    use super::*;
+
+    #[test]
+    fn each_set_is_tested_against_the_largest_within() {
+        const METAL: u8 = DIFFUSE | SURFACE | ABSORBING;
+        let sets = [
+            (DIFFUSE, None),
+            (DIFFUSE | SURFACE, Some(DIFFUSE)),
+            (METAL, Some(DIFFUSE | SURFACE)),
+            (DIFFUSE | SURFACE | VOLUME, Some(DIFFUSE | SURFACE)),
+            (ALL, Some(METAL)),
+        ];
+        assert_eq!(SETS, sets);
+    }
 }

@@ -14,6 +14,7 @@ use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters::models;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits several models to a scan, and tells which it needs: the one that `brdfit fit --model auto` takes
@@ -41,7 +42,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown model, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = models(&arguments.models)?;
     let inputs = std::slice::from_ref(&arguments.scan);
@@ -118,6 +119,7 @@ fn json(measurement: &Measurement, choice: &Choice) -> String {
         "model": choice.chosen().outcome.model.name,
         "criterion": "bic",
         "models": models,
+        "provenance": provenance(&measurement.about, None),
     });
     output::json(&value)
 }

@@ -12,10 +12,12 @@ use crate::engine::joint::SCANS;
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
+use crate::number::{four, two};
 use crate::options::SearchArguments;
-use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 use crate::terms::term_names;
 
@@ -40,14 +42,14 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown parameter, too few or too many scans, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let candidates = with_shared(&arguments.search.wanted()?, &arguments.share)?;
     let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
-            Error::new(format!("{} scans can not be fitted together", measurements.len()))
+            Error::new(format!("{} scans cannot be fitted together", measurements.len()))
                 .help(format!("give 2 to {SCANS} scans")),
         );
     }
@@ -98,8 +100,8 @@ fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
     let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
     let names: Vec<&str> = present(true).map(name).collect();
     let value = |scan: usize, k: usize| match fitted.errors[scan][k] {
-        Some(error) => format!("{} ± {}", digits(fitted.scans[scan][k], 4), digits(error, 2)),
-        None => digits(fitted.scans[scan][k], 4),
+        Some(error) => format!("{} ± {}", four(fitted.scans[scan][k]), two(error)),
+        None => four(fitted.scans[scan][k]),
     };
     let mut lines = vec![format!(
         "{} scans, {} samples, {} parameters; shared: {}",
@@ -152,11 +154,6 @@ fn table(fits: &[Candidate], best: &Candidate) -> Vec<String> {
     lines
 }
 
-fn digits(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    shortest(rounded)
-}
-
 fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> String {
     let (model, fitted) = (best.options.model, &best.fitted);
     let shared: Vec<&str> = (0..fitted.shared.len())
@@ -171,6 +168,7 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
+                "provenance": provenance(&measurement.about, Some(options)),
             })
         })
         .collect();

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose;
-use crate::analysis::profile::{Profile, profile};
+use crate::analysis::profile::calibrate::{LEVELS, threshold};
+use crate::analysis::profile::{End, Profile, profile};
 use crate::engine::{FitError, FitOptions, robust};
 use crate::error::{Error, shown};
 use crate::input::{self, ReadOptions, left_out};
@@ -76,9 +77,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
         let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
         let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
-        Ok(Ok((options.seed, outcome, choice, profiles, copies)))
+        Ok(Ok((options, outcome, choice, profiles, copies)))
     });
-    let (seed, outcome, choice, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let (options, outcome, choice, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
     let fail = |what: &str| Error::new(what).in_file(measurement.label());
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
@@ -95,18 +96,40 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),
-        seed,
+        options,
+        about: measurement.about.clone(),
     };
     let written = match arguments.output.format {
         Format::Text => text::write(&findings),
         Format::Json => json::write(&findings),
     };
     if let Some(picture) = &picture {
-        picture::save(picture, &plot::profile_svg(&findings.name, &findings.profiles))?;
+        picture::save(
+            picture,
+            &plot::profile_svg(&findings.name, &findings.profiles.iter().map(panel).collect::<Vec<_>>()),
+        )?;
     }
     deliver(written.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
+}
+
+/// A profile as it is drawn.
+fn panel(profile: &Profile) -> plot::ProfilePanel {
+    let end = |end: End| (!end.at_bound).then_some(end.value);
+    plot::ProfilePanel {
+        name: profile.name,
+        best: profile.best.value,
+        points: profile
+            .points
+            .iter()
+            .map(|point| (point.value, profile.rise(point)))
+            .collect(),
+        levels: LEVELS.map(|level| (level, threshold(level, profile.degrees_of_freedom))),
+        ends: profile
+            .intervals
+            .map(|interval| [end(interval.low), end(interval.high)]),
+    }
 }
 
 /// The places of the parameters asked for.
@@ -124,7 +147,7 @@ fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Erro
                 0 => format!("model {}", options.model.name),
                 _ => format!("terms {}", term_names(options.terms).join(",")),
             };
-            Error::new(format!("'{}' is no free parameter of the {of}", shown(asked)))
+            Error::new(format!("'{}' is not a free parameter of the {of}", shown(asked)))
                 .help(format!("the free parameters are {}", known()))
         })
     };

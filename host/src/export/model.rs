@@ -43,7 +43,7 @@ impl Model {
     /// From a result of `brdfit fit --format json`, of which `index` (from 1) chooses one if there are several.
     ///
     /// # Errors
-    /// It is none, there are several and none is chosen, or its parameters have no BRDF.
+    /// It is not such a result, there are several and none is chosen, or its parameters have no BRDF.
     pub fn of_json(bytes: &[u8], index: Option<usize>) -> Result<Model, Error> {
         let none = |what: &str| Error::new(what).help("give what brdfit fit --format json has written");
         let all: Value =

@@ -3,7 +3,7 @@
 use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
 use crate::analysis::undetermined::Undetermined;
-use crate::number::{four, percent, short};
+use crate::number::{four, percent, two};
 use crate::terms::term_names;
 
 use brdfit_core::brdf::ALL;
@@ -68,7 +68,7 @@ pub fn candidate(choice: &Choice, one: &Candidate) -> String {
 
 /// A value with its standard error, as "0.5123 +- 0.0021".
 pub fn shown(value: Value) -> String {
-    format!("{} +- {}", four(value.value), short(value.stderr))
+    format!("{} +- {}", four(value.value), two(value.stderr))
 }
 
 /// "a", "a and b", "a, b and c".

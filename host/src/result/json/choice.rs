@@ -12,11 +12,11 @@ use crate::terms::term_names;
 pub struct Selection {
     criterion: &'static str,
     sentence: String,
-    candidates: Vec<Row>,
+    candidates: Vec<JsonCandidate>,
 }
 
 #[derive(Serialize)]
-struct Row {
+struct JsonCandidate {
     model: &'static str,
     terms: Vec<&'static str>,
     /// How many are free.
@@ -31,7 +31,7 @@ struct Row {
 
 /// For the JSON contract.
 pub fn selection(choice: &Choice) -> Selection {
-    let candidate = |one: &Candidate| Row {
+    let candidate = |one: &Candidate| JsonCandidate {
         model: one.options.model.name,
         terms: term_names(one.outcome.terms),
         parameters: one.criteria.parameters,

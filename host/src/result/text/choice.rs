@@ -1,7 +1,7 @@
 //! How the model or its terms were chosen, for the page of a fit.
 
 use crate::analysis::choose::{Candidate, Choice};
-use crate::number::short;
+use crate::number::two;
 use crate::result::words;
 
 /// The table for pages.
@@ -24,7 +24,7 @@ pub fn lines(choice: &Choice) -> Vec<String> {
     let rows = choice.candidates.iter().zip(names).enumerate();
     lines.extend(rows.map(|(place, (one, name))| {
         let Candidate { outcome, criteria, .. } = one;
-        let test = one.p_value.map_or_else(String::new, |p| format!("p = {}", short(p)));
+        let test = one.p_value.map_or_else(String::new, |p| format!("p = {}", two(p)));
         let (aicc, bic) = (criteria.aicc - aicc, criteria.bic - bic);
         let mark = if place == choice.place { '*' } else { ' ' };
         let line = format!(

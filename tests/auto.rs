@@ -266,6 +266,7 @@ fn what_makes_no_sense_is_refused_in_one_line() {
             &["fit", &file, "--model", "abg,abg"][..],
             "the model abg is given twice",
         ),
+        (&["fit", &file, "--model", "auto,abg"], "auto is all models"),
         (&["fit", &file, "--model", "abg,phong"], "there is no model 'phong'"),
         (
             &["fit", &file, "--model", LIST, "--fix", "x=1"],

@@ -98,6 +98,9 @@ pub fn models(list: &str) -> Result<Vec<&'static Model>, Error> {
     }
     let mut models: Vec<&'static Model> = Vec::new();
     for name in list.split(',') {
+        if name.trim() == AUTO {
+            return Err(Error::new("auto is all models").help("give it alone, or name models"));
+        }
         let model = model(name)?;
         if models.contains(&model) {
             return Err(Error::new(format!("the model {} is given twice", model.name)).help("give it once"));

@@ -63,10 +63,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let several = measurements.len() > 1;
     let interrupt = several.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
-    let options = FitOptions {
-        until: interrupt.map_or_else(Until::default, Until::set),
-        ..options
-    };
+    let wanted = wanted.until(interrupt.map_or_else(Until::default, Until::set));
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {

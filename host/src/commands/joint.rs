@@ -168,7 +168,7 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
-                "provenance": provenance(&measurement.about, Some(options)),
+                "provenance": provenance(&measurement.about, Some(&best.options)),
             })
         })
         .collect();

@@ -64,19 +64,19 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let found = pool.install(|| -> Result<_, FitError> {
         let (options, outcome, choice) = choose::fit(samples, &wanted)?;
         let samples = &robust::kept(samples, &outcome)[..];
-        let options = FitOptions {
+        let plain = FitOptions {
             robust: false,
             ..options
         };
-        let parameters = match parameters(&arguments.parameter, &options) {
+        let parameters = match parameters(&arguments.parameter, &plain) {
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),
         };
         let each = parameters.par_iter();
         let calibrated = arguments.calibrate.unwrap_or(0);
-        let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
+        let profiles = each.map(|&index| profile(samples, &plain, &outcome, index, calibrated));
         let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
-        let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
+        let copies = bootstrap(samples, &plain, &outcome, arguments.bootstrap.unwrap_or(0))?;
         Ok(Ok((options, outcome, choice, profiles, copies)))
     });
     let (options, outcome, choice, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;

@@ -4,7 +4,7 @@ use brdfit_core::real::Real;
 
 use super::model::Model;
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::plain::plain;
 
 /// OpticStudio takes no smaller B, unless g is 0 (its user guide, "Available Scatter Models").

@@ -1,13 +1,14 @@
 //! Instructions of a pass over a scan and of a whole search, counted by `valgrind --tool=callgrind`: they do not depend on what else the machine does.
 //!
-//! `cargo run --release --example instructions > benches/results/instructions.md`; with arguments it does the work that is counted.
+//! `cargo run --release --example instructions > benches/results/instructions.md`; with `--check` it counts again and fails if anything takes 3 % more than that table says, so that a lost vectorisation is seen; with other arguments it does the work that is counted.
 
 use std::hint::black_box;
 use std::process::Command;
 
 use brdfit::analysis::paper_sets::paper_scans;
+use brdfit::engine::models::MODELS;
 use brdfit::engine::simd::{FastEq14, Simd};
-use brdfit::engine::{FitOptions, Precision, blocks, fit};
+use brdfit::engine::{FitOptions, Model, Precision, blocks, fit};
 use brdfit_core::brdf::{ALL, DIFFUSE, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
@@ -24,14 +25,21 @@ const WORK: [(&str, u64); 6] = [
     ("search2", 2),
     ("search3", 2),
 ];
-const MODELS: [&str; 4] = ["all f64", "all f32", "diffuse,surface f64", "diffuse,surface f32"];
+const EQ_14: [&str; 4] = ["all f64", "all f32", "diffuse,surface f64", "diffuse,surface f32"];
 /// Valgrind has no AVX-512.
 const INSTRUCTIONS: [&str; 2] = ["portable", "avx2"];
+/// Candidates of the search that stands for each other model: it is made of passes.
+const FEW: u32 = 20;
+/// What a count may be above that of the table.
+const MORE: f64 = 1.03;
+/// The table, as it was committed.
+const TABLE: &str = include_str!("results/instructions.md");
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match &arguments[..] {
         [] => table(),
+        [check] if check == "--check" => std::process::exit(i32::from(!is_as_before())),
         [work, model, simd, repeats] => {
             let simd = Simd::available().into_iter().find(|one| one.name() == simd);
             let Some(simd) = simd else { std::process::exit(3) };
@@ -54,7 +62,17 @@ fn run(work: &str, model: &str, simd: Simd, repeats: u64, samples: &[Sample<f64>
         "all f64" => repeat::<f64, ALL, 6>(work, simd, repeats, samples, Precision::F64),
         "all f32" => repeat::<f32, ALL, 6>(work, simd, repeats, samples, Precision::F32),
         "diffuse,surface f64" => repeat::<f64, DS, 4>(work, simd, repeats, samples, Precision::F64),
-        _ => repeat::<f32, DS, 4>(work, simd, repeats, samples, Precision::F32),
+        "diffuse,surface f32" => repeat::<f32, DS, 4>(work, simd, repeats, samples, Precision::F32),
+        name => {
+            let options = FitOptions {
+                simd,
+                starts: Some(FEW),
+                ..FitOptions::of(Model::find(name).expect("a known model"))
+            };
+            for _ in 0..repeats {
+                drop(black_box(fit(black_box(samples), &options)));
+            }
+        }
     }
 }
 
@@ -103,29 +121,81 @@ fn counted(work: &str, model: &str, simd: &str, repeats: u64) -> Option<u64> {
         .and_then(|(_, count)| count.trim().parse().ok())
 }
 
+/// One line of the table: the model, what is counted, and the counts in the order of [`INSTRUCTIONS`].
+type Line = (String, String, [Option<u64>; 2]);
+
+/// Every count, as it is made.
+fn lines() -> impl Iterator<Item = Line> {
+    let eq_14 = EQ_14
+        .into_iter()
+        .flat_map(|model| WORK.map(|(work, repeats)| (model, work, repeats)));
+    let others = MODELS.iter().map(|model| (model.name, "search1", 1));
+    eq_14.chain(others).map(|(model, work, repeats)| {
+        let counts = INSTRUCTIONS.map(|simd| {
+            let more = counted(work, model, simd, 2 * repeats)?;
+            Some((more - counted(work, model, simd, repeats)?) / repeats)
+        });
+        (model.to_string(), work.to_string(), counts)
+    })
+}
+
 fn table() {
     println!("# Instructions\n");
     println!(
-        "171 samples; a pass of a kernel over test data 1, and whole default searches of test data 1 to 3 (seed 0, reading the samples included)."
+        "171 samples; a pass of a kernel over test data 1, and whole default searches of test data 1 to 3 (seed 0, reading the samples included); of each model by its name a search with {FEW} candidates in f64."
     );
     println!(
         "Counted by valgrind's callgrind, which knows no AVX-512, so the same on every x86-64 processor and with any load; the compiler's version and profile change them."
     );
-    println!("Regenerate: `cargo run --release --example instructions > benches/results/instructions.md`.\n");
+    println!(
+        "Regenerate: `cargo run --release --example instructions > benches/results/instructions.md`; `-- --check` fails if a count is 3 % above.\n"
+    );
     println!("| model | what | portable | of a sample | avx2 | of a sample |\n|---|---|--:|--:|--:|--:|");
     let samples = 171.0;
-    for model in MODELS {
-        for (work, repeats) in WORK {
-            let cells = INSTRUCTIONS.map(|simd| {
-                let more = counted(work, model, simd, 2 * repeats);
-                let count = more
-                    .zip(counted(work, model, simd, repeats))
-                    .map(|(more, few)| (more - few) / repeats);
-                count.map_or("- | -".to_string(), |count| {
-                    format!("{count} | {:.1}", count as f64 / samples)
-                })
-            });
-            println!("| {model} | {work} | {} |", cells.join(" | "));
+    for (model, work, counts) in lines() {
+        let cells = counts.map(|count| {
+            count.map_or("- | -".to_string(), |count| {
+                format!("{count} | {:.1}", count as f64 / samples)
+            })
+        });
+        println!("| {model} | {work} | {} |", cells.join(" | "));
+    }
+}
+
+/// The counts of a line of the committed table; none where it has none.
+fn before(model: &str, work: &str) -> [Option<u64>; 2] {
+    let cells = TABLE
+        .lines()
+        .map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
+    let mut same = cells.filter(|cells| cells.len() == 8 && (cells[1], cells[2]) == (model, work));
+    same.next()
+        .map_or([None; 2], |cells| [cells[3].parse().ok(), cells[5].parse().ok()])
+}
+
+/// Counts again, and tells what takes more than the table says, or is not in it.
+fn is_as_before() -> bool {
+    let mut good = true;
+    for (model, work, counts) in lines() {
+        for ((simd, count), before) in INSTRUCTIONS.into_iter().zip(counts).zip(before(&model, &work)) {
+            let what = match (count, before) {
+                (Some(count), Some(before)) if count as f64 <= MORE * before as f64 => continue,
+                // A processor without AVX2 counts the portable passes alone.
+                (None, _) if simd == "avx2" => continue,
+                (Some(count), Some(before)) => format!("{count} instructions, {before} before"),
+                (Some(count), None) => format!("{count} instructions, and the table has none"),
+                (None, _) => "not counted".to_string(),
+            };
+            println!("{model}, {work}, {simd}: {what}");
+            good = false;
         }
     }
+    println!(
+        "{}",
+        if good {
+            "no count is 3 % above the table"
+        } else {
+            "regenerate benches/results/instructions.md, and say why"
+        }
+    );
+    good
 }

@@ -1,7 +1,7 @@
 //! Prints how often `--terms auto` finds the terms that a scene was made with, as a Markdown table: `cargo run --release --example selection > benches/results/selection.md`.
 
 use brdfit::analysis::bootstrap::{Noise, copy};
-use brdfit::analysis::choose::{self, Candidate, Choice, SETS};
+use brdfit::analysis::choose::{Candidate, Choice, SETS, choose, sets};
 use brdfit::engine::{self, FitOptions, Material};
 use brdfit::terms::term_names;
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
@@ -122,24 +122,21 @@ fn scene(k: u64) -> Scene {
     });
     let contribution = costs.fold(f64::INFINITY, f64::min) / (noise * noise);
     let noisy = copy(&samples, &actual, noise, random);
-    let options = FitOptions {
-        choose_terms: true,
-        ..FitOptions::default()
-    };
-    let choice = choose::fit(&noisy, &options)
-        .expect("simulated scans are valid")
-        .2
-        .expect("terms were chosen");
+    let choice = choose(&noisy, &sets(&FitOptions::default())).expect("simulated scans are valid");
     Scene {
         set,
         contribution,
-        chosen: [choice.terms, least_aicc(&choice)],
+        chosen: [choice.chosen().options.terms, least_aicc(&choice)],
     }
 }
 
 fn least_aicc(choice: &Choice) -> u8 {
-    let order = |a: &&Candidate, b: &&Candidate| a.aicc.total_cmp(&b.aicc);
-    choice.candidates.iter().min_by(order).map_or(ALL, |one| one.terms)
+    let order = |a: &&Candidate, b: &&Candidate| a.criteria.aicc.total_cmp(&b.criteria.aicc);
+    choice
+        .candidates
+        .iter()
+        .min_by(order)
+        .map_or(ALL, |one| one.options.terms)
 }
 
 /// Angles, parameters and noise of a scene with these terms.

@@ -5,7 +5,7 @@
 )]
 
 use brdfit::analysis::bootstrap::{Noise, copy};
-use brdfit::analysis::choose::{self, SETS};
+use brdfit::analysis::choose::{self, SETS, Wanted, sets};
 use brdfit::analysis::profile::calibrate::threshold;
 use brdfit::engine::{self, FitOptions, Material};
 use brdfit::result::words;
@@ -17,11 +17,8 @@ use brdfit_suite::scan::{data, scan, six};
 use brdfit_suite::tolerance::{self, check};
 use serde_json::Value;
 
-fn auto() -> FitOptions {
-    FitOptions {
-        choose_terms: true,
-        ..FitOptions::default()
-    }
+fn auto() -> Wanted {
+    Wanted::Best(sets(&FitOptions::default()))
 }
 
 /// Three angles of a scene with the terms that the set has, each plain to see with 0.5 % noise.
@@ -48,18 +45,18 @@ fn finds_the_terms_of_a_scene() {
         for seed in 0..12 {
             let samples = scene(terms, seed);
             let (options, outcome, choice) = choose::fit(&samples, &auto()).unwrap();
-            let choice = choice.unwrap();
+            let chosen = choice.unwrap().chosen().options;
             all += 1;
-            right += u32::from(choice.terms == terms);
+            right += u32::from(chosen.terms == terms);
             // The compiled set of the chosen terms is the one that ran.
-            assert_eq!(options.terms, choice.terms);
+            assert_eq!(options, chosen);
             let alone = FitOptions {
-                terms: choice.terms,
+                terms: chosen.terms,
                 ..FitOptions::default()
             };
             assert_eq!(outcome, engine::fit(&samples, &alone).unwrap());
             let free = outcome.uncertainty.places.iter().flatten().count();
-            assert_eq!(free, parameters(choice.terms));
+            assert_eq!(free, parameters(chosen.terms));
         }
     }
     // 19 of 20 are asked for.
@@ -74,12 +71,16 @@ fn criteria() {
     let choice = choose::fit(&samples, &auto()).unwrap().2.unwrap();
     assert_eq!(choice.candidates.len(), SETS.len());
     for (candidate, (terms, _)) in choice.candidates.iter().zip(SETS) {
-        assert_eq!((candidate.terms, candidate.parameters), (terms, parameters(terms)));
-        let k = candidate.parameters as f64 + 1.0;
-        let likelihood = -0.5 * count * (candidate.cost / count).ln();
+        let criteria = candidate.criteria;
+        assert_eq!(
+            (candidate.options.terms, criteria.parameters),
+            (terms, parameters(terms))
+        );
+        let k = criteria.parameters as f64 + 1.0;
+        let likelihood = -0.5 * count * (candidate.outcome.cost / count).ln();
         let aicc = 2.0 * k * count / (count - k - 1.0) - 2.0 * likelihood;
         let bic = k * count.ln() - 2.0 * likelihood;
-        for (criterion, expected) in [(candidate.aicc, aicc), (candidate.bic, bic)] {
+        for (criterion, expected) in [(criteria.aicc, aicc), (criteria.bic, bic)] {
             assert!(tolerance::CRITERION.admits((criterion / expected - 1.0).abs()));
         }
     }
@@ -88,11 +89,11 @@ fn criteria() {
     let samples = scene(DIFFUSE | SURFACE, 1);
     let choice = choose::fit(&samples, &auto()).unwrap().2.unwrap();
     // One parameter more: the F test is the two-sided t test, of which `threshold` has the quantiles.
-    let plain = choice.candidates[1];
+    let plain = &choice.candidates[1];
     let mut largest = 0.0f64;
     for more in &choice.candidates[2..4] {
-        let left = samples.len() - more.parameters;
-        let f = (plain.cost / more.cost - 1.0) * left as f64;
+        let left = samples.len() - more.criteria.parameters;
+        let f = (plain.outcome.cost / more.outcome.cost - 1.0) * left as f64;
         let limit = threshold(1.0 - more.p_value.unwrap(), left);
         largest = largest.max((f - limit).abs());
     }
@@ -102,26 +103,26 @@ fn criteria() {
 #[test]
 fn bounds_that_need_a_term_keep_it() {
     let samples = scene(DIFFUSE | SURFACE, 3);
-    let mut options = auto();
+    let mut options = FitOptions::default();
     (options.lower[5], options.upper[5]) = (1.0, 1.0);
-    let choice = choose::fit(&samples, &options).unwrap().2.unwrap();
+    let choice = choose::fit(&samples, &Wanted::Best(sets(&options))).unwrap().2.unwrap();
     assert!(
         choice
             .candidates
             .iter()
-            .all(|one| has(one.terms, 5) || one.terms == DIFFUSE)
+            .all(|one| has(one.options.terms, 5) || one.options.terms == DIFFUSE)
     );
-    assert_ne!(choice.terms, DIFFUSE);
+    assert_ne!(choice.chosen().options.terms, DIFFUSE);
     // A held parameter is not counted.
-    let absorbing = choice.candidates.iter().find(|one| has(one.terms, 5)).unwrap();
-    assert_eq!(absorbing.parameters, parameters(absorbing.terms) - 1);
+    let absorbing = choice.candidates.iter().find(|one| has(one.options.terms, 5)).unwrap();
+    assert_eq!(absorbing.criteria.parameters, parameters(absorbing.options.terms) - 1);
     // Without noise the smallest set that is exact is chosen, not the one with the luckiest rounding.
     let material = Material::paper([0.1, 1.0, 0.0, 0.2, 1.5, 0.0]);
     let exact = copy(&samples, &material, 0.0, &mut Noise::new(0, 0));
     assert_eq!(choose::fit(&exact, &auto()).unwrap().0.terms, DIFFUSE | SURFACE);
     // Too few samples for the larger sets: those are no candidates.
     let few = choose::fit(&samples[..5], &auto()).unwrap().2.unwrap();
-    assert!(few.candidates.iter().all(|one| one.parameters <= 5) && few.candidates.len() < SETS.len());
+    assert!(few.candidates.iter().all(|one| one.criteria.parameters <= 5) && few.candidates.len() < SETS.len());
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use brdfit::engine::Model;
 use brdfit::input::{self, ReadOptions};
+use brdfit_core::geometry::Sample;
 use brdfit_suite::literal;
 use brdfit_suite::program::{self, Ran};
 use brdfit_suite::scan::{data, left_out};
@@ -29,6 +31,11 @@ fn export(to: &str, name: &str) -> String {
 
 /// The largest relative difference between a file's values, read as `brdfit fit` reads it, and Eq. 14 as printed.
 fn off(text: &str, least: usize) -> f64 {
+    off_from(text, least, |angles| literal::f(angles, PARAMETERS))
+}
+
+/// The same of any model.
+fn off_from(text: &str, least: usize, f: impl Fn([f64; 3]) -> f64) -> f64 {
     let scans = input::parse(
         "file",
         text.as_bytes(),
@@ -42,11 +49,110 @@ fn off(text: &str, least: usize) -> f64 {
         panic!("{} scans", scans.len())
     };
     assert!(scan.samples.len() > least, "{}", scan.samples.len());
-    let each = scan.samples.iter().map(|sample| {
-        let f = literal::f([sample.theta_i, sample.theta_s, sample.delta_phi], PARAMETERS);
-        (sample.brdf / f - 1.0).abs()
-    });
+    let each = scan
+        .samples
+        .iter()
+        .map(|sample| (sample.brdf / f([sample.theta_i, sample.theta_s, sample.delta_phi]) - 1.0).abs());
     each.fold(0.0, f64::max)
+}
+
+/// The tables hold any model: read back, its values are those of the model.
+#[test]
+fn tables_of_any_model_read_back() {
+    for (name, list) in [
+        ("ggx", "rho_d=0.1,rho_s=10,rho_v=0.01,m=0.1,n=3,kappa=1"),
+        ("abg", "rho_d=0.05,A=0.01,B=0.001,g=1.8"),
+    ] {
+        let model = Model::find(name).unwrap();
+        let given = list.split(',').map(|one| one.split_once('=').unwrap().1);
+        let values: Vec<f64> = given.map(|value| value.parse().unwrap()).collect();
+        for (to, least) in [("zemax", 20_000), ("bird", 1000), ("openmaterial", 15_000)] {
+            let arguments = ["export", "--model", name, "--params", list, "--to", to];
+            let wavelength: &[&str] = if to == "openmaterial" {
+                &["--wavelength", "905"]
+            } else {
+                &[]
+            };
+            let text = program::succeed(&[&arguments[..], wavelength].concat());
+            let f = |angles: [f64; 3]| {
+                let [theta_i, theta_s, delta_phi] = angles;
+                let sample = Sample {
+                    theta_i,
+                    theta_s,
+                    delta_phi,
+                    ..Sample::in_plane(0.0, 0.0, 1.0)
+                };
+                model.ln_f(&values, &sample).unwrap().exp()
+            };
+            // The file's digits of angles near a narrow peak.
+            let off = off_from(&text, least, f);
+            assert!(tolerance::TABLE_ROUND_TRIP.admits(off), "{name} {to}: {off:e}");
+        }
+    }
+}
+
+/// OpticStudio and FRED have ABg themselves: what they are given adds up to the model.
+#[test]
+fn abg_goes_to_programs_that_have_it() {
+    let list = "rho_d=0.05,A=0.01,B=0.001,g=1.8";
+    let export = |to: &str| {
+        let arguments = [
+            "export",
+            "--model",
+            "abg",
+            "--params",
+            list,
+            "--name",
+            "a \"b\".csv",
+            "--to",
+            to,
+        ];
+        program::succeed(&arguments)
+    };
+    let f = |a: f64, b: f64, g: f64, shift: f64| a / (b + shift.powf(g));
+    let shift = 0.3;
+    let expected = 0.05 / std::f64::consts::PI + f(0.01, 0.001, 1.8, shift);
+    let text = export("zemax-abg");
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split('\t').collect()).collect();
+    let rows = rows.iter().filter(|row| row.len() == 6 && row[0] != "Name");
+    let values = rows.map(|row| {
+        let [a, b, g] = [3, 4, 5].map(|place| row[place].parse::<f64>().unwrap());
+        f(a, b, g, shift)
+    });
+    let sum: f64 = values.sum();
+    assert!((sum / expected - 1.0).abs() < 1e-14, "{text}");
+    assert!(text.ends_with("2 1\nA__B__LOBE 1\nA__B__FLOOR 1\n"), "{text}");
+
+    let text = export("fred");
+    let value = |name: &str| -> f64 {
+        let line = text.lines().find(|line| line.trim().starts_with(name)).unwrap();
+        line.split_once(" = ").unwrap().1.parse().unwrap()
+    };
+    let sum = value("lambert.Refl") / std::f64::consts::PI
+        + f(value("lobe.Acoef"), value("lobe.Bcoef"), value("lobe.G"), shift);
+    assert!((sum / expected - 1.0).abs() < 1e-14, "{text}");
+    assert!(text.contains("lobe.Name = \"a \"\"b\"\".csv ABg\""), "{text}");
+
+    for (to, list, model, what) in [
+        ("zemax-abg", LIST, "beckmann", "cannot hold the model beckmann"),
+        ("fred", LIST, "ggx", "cannot hold the model ggx"),
+        (
+            "zemax-abg",
+            "rho_d=0.05,A=0.01,B=1e-13,g=1.8",
+            "abg",
+            "takes no B of 1e-13",
+        ),
+        (
+            "mitsuba",
+            "rho_d=0.05,A=0.01,B=1e-3,g=1.8",
+            "abg",
+            "cannot hold the model abg",
+        ),
+        ("rust", LIST, "ggx", "cannot hold the model ggx"),
+    ] {
+        let message = program::fail(&["export", "--model", model, "--params", list, "--to", to]);
+        assert!(message.contains(what), "{message}");
+    }
 }
 
 #[test]

@@ -137,3 +137,49 @@ fn a_free_tail_contains_ggx() {
     check(worst[0], tolerance::TAIL_GGX);
     check(worst[1], tolerance::TAIL_SLOPE);
 }
+
+/// ln f of a surface lobe alone differs between any two tails by `ln (q - 1) - q ln (1 + t)`, t = tan^2 theta_h / m^2; its derivative by q follows.
+fn tail<R: Real>() -> [f64; 2] {
+    type Big = dashu_float::FBig<dashu_float::round::mode::HalfEven, 2>;
+    let big = |x: f64| Big::try_from(x).expect("a finite number").with_precision(200).value();
+    let mut worst = [0.0f64; 2];
+    for q in [1.001, 1.01, 1.3, 2.0, 3.7, 10.0, 50.0] {
+        for m in [0.02, 0.3, 3.0] {
+            for sample in samples(30.0, |_| 1.0) {
+                let angles = [sample.theta_i, sample.theta_s].map(R::of);
+                let geometry = Geometry::new(angles[0], angles[1], R::PI).expect("valid angles");
+                let at = |q: R| {
+                    let x = [0.0, 2.0, 0.0, m, 2.0, 0.0].map(R::of);
+                    let x = [x[0], x[1], x[2], x[3], x[4], x[5], q];
+                    ln_f::<R, Microfacet<{ ALL | TAIL }, HyperCauchy>, 7, 6>(&x, geometry.into())
+                };
+                let (q, two) = (R::of(q), R::of(2.0));
+                let (tail, ggx) = (at(q), at(two));
+                let tan2 = big(geometry.surface().tan2_theta_h.f64());
+                let m = big(R::of(m).f64());
+                let ln = (big(1.0) + tan2 / (m.clone() * m)).ln();
+                let less = big(q.f64()) - big(1.0);
+                let change = (less.ln() - (big(q.f64()) - big(2.0)) * ln.clone()).to_f64().value();
+                let slope = (big(1.0) / less - ln.clone()).to_f64().value();
+                let exponent = q.f64() * ln.to_f64().value();
+                // Below this the lobe counts as R::TINY.
+                if tail.0.f64() < Real::ln(R::TINY.f64()) + 7.0 {
+                    continue;
+                }
+                let unit = R::EPSILON.f64() * (1.0 + exponent + ggx.0.f64().abs());
+                worst[0] = worst[0].max((tail.0.f64() - ggx.0.f64() - change).abs() / unit);
+                let unit = R::EPSILON.f64() * (1.0 + slope.abs());
+                worst[1] = worst[1].max((tail.1[6].f64() - slope).abs() / unit);
+            }
+        }
+    }
+    println!("{worst:?}");
+    worst
+}
+
+#[test]
+fn any_tail_has_its_digits() {
+    let (double, single) = (tail::<f64>(), tail::<f32>());
+    check(double[0].max(single[0]), tolerance::TAIL_VALUE);
+    check(double[1].max(single[1]), tolerance::TAIL_DERIVATIVE);
+}

@@ -132,7 +132,7 @@ pub trait Formula<const P: usize>: Copy {
     /// The parameters, in the order of the formula.
     const PARAMETERS: [Parameter; P];
 
-    /// f in sr^-1.
+    /// f in sr^-1; what is less than [`Real::TINY`] counts as that.
     ///
     /// A parameter of role [`crate::model::Role::Absorption`] comes as its square.
     fn brdf<R: Real, N: Number<R>>(x: &[N; P], at: &Directions<R>) -> N;

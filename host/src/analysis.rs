@@ -3,9 +3,11 @@
 pub mod bootstrap;
 pub mod choose;
 pub mod converge;
+pub mod criteria;
 pub mod derived;
 pub mod fit;
 pub mod hints;
+pub mod joint;
 pub mod paper;
 pub mod paper_sets;
 pub mod profile;

@@ -1,5 +1,6 @@
 //! A fitted model in the forms of the programs that use it, one file a form.
 
+pub mod abg;
 pub mod bird;
 pub mod constants;
 pub mod glsl;

@@ -5,10 +5,11 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::analysis::choose::{Wanted, sets};
 use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
 use crate::names::{METHODS, PRECISIONS};
-use crate::parameters::{Range, apply, check, model, parameter};
+use crate::parameters::{AUTO, Range, apply, check, models, names_of, parameter};
 use crate::terms::terms;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
@@ -23,16 +24,16 @@ pub struct SearchArguments {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// The model, one of those that brdfit compare shows
-    #[arg(long, value_name = "NAME", default_value = "beckmann")]
+    /// The model; of several with commas between, or of all with auto, that of least BIC
+    #[arg(long, value_name = "NAME|LIST|auto", default_value = "beckmann")]
     model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing, or auto: the fewest that the scan supports
     #[arg(long, value_name = "LIST", default_value = "all")]
     terms: String,
-    /// Bounds of a parameter, in place of Table 1 of the paper; repeatable
+    /// Bounds of a parameter, in place of Table 1 of the paper, in every model that has it; repeatable
     #[arg(long, value_name = "NAME=LO:HI")]
     bounds: Vec<String>,
-    /// Holds a parameter fixed; repeatable
+    /// Holds a parameter fixed, in every model that has it; repeatable
     #[arg(long, value_name = "NAME=VALUE")]
     fix: Vec<String>,
     /// Leaves out samples far from the fit (6 robust standard deviations of ln f), and says how many
@@ -64,8 +65,22 @@ impl SearchArguments {
     ///
     /// # Errors
     /// Terms or bounds that make no sense.
-    pub fn fit_options(&self) -> Result<FitOptions, Error> {
-        let model = model(&self.model)?;
+    pub fn wanted(&self) -> Result<Wanted, Error> {
+        let models = models(&self.model)?;
+        for text in self.bounds.iter().chain(&self.fix) {
+            known(&models, text)?;
+        }
+        let each = models.iter().map(|model| self.of_model(model));
+        let list: Vec<FitOptions> = each.collect::<Result<_, _>>()?;
+        Ok(match &list[..] {
+            _ if self.terms == AUTO => Wanted::Best(list.iter().flat_map(sets).collect()),
+            [one] => Wanted::One(*one),
+            _ => Wanted::Best(list),
+        })
+    }
+
+    /// The same of one model, with the bounds of the parameters that it has.
+    fn of_model(&self, model: &'static Model) -> Result<FitOptions, Error> {
         let mut options = FitOptions {
             method: self.method,
             precision: self.precision,
@@ -73,11 +88,11 @@ impl SearchArguments {
             starts: self.starts,
             robust: self.robust,
             terms: if self.terms == AUTO { ALL } else { terms(&self.terms)? },
-            choose_terms: self.terms == AUTO,
             ..FitOptions::of(model)
         };
-        let ranges = self.bounds.iter().map(|text| bounds(model, text));
-        let fixed = self.fix.iter().map(|text| fixed(model, text, "--fix"));
+        let has = |text: &&String| place(model, text).is_some();
+        let ranges = self.bounds.iter().filter(has).map(|text| bounds(model, text));
+        let fixed = self.fix.iter().filter(has).map(|text| fixed(model, text, "--fix"));
         let ranges: Vec<Range> = ranges.chain(fixed).collect::<Result<_, _>>()?;
         apply(&ranges, &mut options)?;
         Ok(options)
@@ -95,8 +110,30 @@ impl SearchArguments {
     }
 }
 
-/// The word for terms that the scan chooses.
-const AUTO: &str = "auto";
+/// The place of the parameter that `NAME=...` is about, if the model has it.
+fn place(model: &Model, text: &str) -> Option<usize> {
+    model.place(text.split('=').next()?.trim())
+}
+
+/// Refuses `NAME=...` of a parameter that none of the models has.
+fn known(models: &[&'static Model], text: &str) -> Result<(), Error> {
+    if models.iter().any(|model| place(model, text).is_some()) {
+        return Ok(());
+    }
+    let name = text.split('=').next().unwrap_or_default();
+    match models {
+        [one] => parameter(one, name).map(drop),
+        several => {
+            let each = several
+                .iter()
+                .map(|model| format!("{} has {}", model.name, names_of(model)));
+            Err(
+                Error::new(format!("no model of the list has a parameter '{}'", shown(name)))
+                    .help(each.collect::<Vec<_>>().join("; ")),
+            )
+        }
+    }
+}
 
 /// Reads `NAME=LO:HI`.
 ///

@@ -1,5 +1,6 @@
 //! The parameters of a model: what values they can have, and bounds.
 
+use crate::engine::models::MODELS;
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
 use crate::number::shortest;
@@ -57,19 +58,54 @@ pub fn apply(ranges: &[Range], options: &mut FitOptions) -> Result<(), Error> {
 /// No such name.
 pub fn parameter(model: &Model, name: &str) -> Result<usize, Error> {
     model.place(name.trim()).ok_or_else(|| {
-        let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
         Error::new(format!("there is no parameter '{}'", shown(name)))
-            .help(format!("the parameters are {}", names.join(", ")))
+            .help(format!("the parameters are {}", names_of(model)))
     })
 }
 
-/// The model of this name.
+/// The names of the parameters of a model, with commas between.
+pub fn names_of(model: &Model) -> String {
+    let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
+    names.join(", ")
+}
+
+/// The word for terms or a model that the scan chooses.
+pub const AUTO: &str = "auto";
+
+/// The one model of this name.
 ///
 /// # Errors
-/// No such name.
+/// No such name, or there are several to choose from.
 pub fn model(name: &str) -> Result<&'static Model, Error> {
+    if name.trim() == AUTO || name.contains(',') {
+        return Err(
+            Error::new("this command takes one model").help("name one; brdfit compare shows which a scan needs")
+        );
+    }
     Model::find(name.trim()).ok_or_else(|| {
-        let names: Vec<&str> = crate::engine::models::MODELS.iter().map(|model| model.name).collect();
+        let names: Vec<&str> = MODELS.iter().map(|model| model.name).collect();
         Error::new(format!("there is no model '{}'", shown(name))).help(format!("the models are {}", names.join(", ")))
     })
+}
+
+/// The models of a list with commas between, each once; all models for `auto`.
+///
+/// # Errors
+/// A name is unknown, or given twice.
+pub fn models(list: &str) -> Result<Vec<&'static Model>, Error> {
+    if list.trim() == AUTO {
+        return Ok(MODELS.iter().collect());
+    }
+    let mut models: Vec<&'static Model> = Vec::new();
+    for name in list.split(',') {
+        if name.trim() == AUTO {
+            return Err(Error::new("auto is all models").help("give it alone, or name models"));
+        }
+        let model = model(name)?;
+        if models.contains(&model) {
+            return Err(Error::new(format!("the model {} is given twice", model.name)).help("give it once"));
+        }
+        models.push(model);
+    }
+    Ok(models)
 }

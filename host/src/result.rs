@@ -4,7 +4,7 @@ pub mod cell;
 pub mod columns;
 mod csv;
 pub mod json;
-mod text;
+pub mod text;
 pub mod words;
 
 pub use csv::csv;

@@ -269,3 +269,19 @@ pub const LOBE_PEAK: Tolerance = Tolerance(5e-9);
 pub const LOBE_STDERR: Tolerance = Tolerance(0.02);
 /// Reflectance of a grey surface, and its standard error; measured 5.6e-17.
 pub const GREY: Tolerance = Tolerance(3e-16);
+/// Models of stray light against 60 digits, in epsilons of the largest logarithm on the way: ln f in f64; measured 1.39.
+pub const STRAY_LIGHT_F64: Tolerance = Tolerance(2.0);
+/// Their derivatives; measured 1.87.
+pub const STRAY_LIGHT_GRADIENT_F64: Tolerance = Tolerance(2.5);
+/// ln f in f32; measured 1.30.
+pub const STRAY_LIGHT_F32: Tolerance = Tolerance(2.0);
+/// Their derivatives; measured 2.31.
+pub const STRAY_LIGHT_GRADIENT_F32: Tolerance = Tolerance(3.0);
+/// |beta - beta_0| near the specular direction, in epsilons of f32; measured 0.95.
+pub const SHIFT_F32: Tolerance = Tolerance(1.5);
+/// ln f of a distribution with a free tail against 60 digits, in epsilons of the largest logarithm on the way; measured 7.27.
+pub const TAIL_VALUE: Tolerance = Tolerance(10.0);
+/// Its derivative by q, in epsilons of its size; measured 1.57.
+pub const TAIL_DERIVATIVE: Tolerance = Tolerance(2.0);
+/// Tables of other models than Eq. 14, read back: the largest relative difference, near narrow peaks.
+pub const TABLE_ROUND_TRIP: Tolerance = Tolerance(1e-6);

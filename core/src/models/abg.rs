@@ -17,7 +17,7 @@ impl Formula<4> for Abg {
         Parameter::new("B", "B", Role::Shape, 10.0)
             .what("|beta - beta_0|^g at the shoulder of the peak")
             .bounds(1e-15, 10.0)
-            .domain(1e-30, 1e6)
+            .domain(1e-15, 1e6)
             .spread(1e-9, 1.0),
         Parameter::new("g", "g", Role::Shape, 6.0)
             .what("slope of the wings")
@@ -27,8 +27,12 @@ impl Formula<4> for Abg {
     ];
 
     fn brdf<R: Real, N: Number<R>>([rho_d, a, b, g]: &[N; 4], at: &Directions<R>) -> N {
-        // At the peak itself ln has no value, and the power none that counts.
-        let shift = N::of(at.shift.max(R::TINY));
-        *rho_d / R::PI + *a / (*b + shift.pow(*g))
+        // At the peak itself ln has no value: there the power is 0, but 1 without a slope, as beside the peak.
+        let power = if at.shift > R::ZERO {
+            N::of(at.shift).pow(*g)
+        } else {
+            N::of(if g.value() > R::ZERO { R::ZERO } else { R::ONE })
+        };
+        *rho_d / R::PI + *a / (*b + power)
     }
 }

@@ -114,6 +114,8 @@ pub(crate) fn run<const P: usize>(
         cost: best.at.cost,
         separate: separate.iter().map(|fit| fit.1).sum(),
         samples,
-        parameters: problem.coordinates(),
+        parameters: (0..problem.coordinates())
+            .filter(|&k| bounds.lower[k] < bounds.upper[k])
+            .count(),
     }
 }

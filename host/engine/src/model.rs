@@ -45,7 +45,11 @@ impl Model {
         &MODELS[0]
     }
 
-    /// A model of one's own; its passes go lane by lane.
+    /// A model of one's own, from [`brdfit_core::formula::Own`] of a formula or from another [`brdfit_core::model::Model`].
+    ///
+    /// Everything of the engine takes it: searches, minima, uncertainty, `f32`, joint and robust fits; `examples/own_model.rs` fits one.
+    /// `P` is the number of its parameters and `C` that of its numbers a pair of directions, which is 8 for a formula.
+    /// Its passes go lane by lane.
     ///
     /// ```
     /// use brdfit_core::formula::Own;

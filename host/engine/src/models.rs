@@ -14,7 +14,7 @@ use crate::simd::{AVX2, AVX512, EVERY};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 15] = [
+pub static MODELS: [Model; 17] = [
     Model {
         name: "beckmann",
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -58,6 +58,21 @@ pub static MODELS: [Model; 15] = [
         "a distribution with a free tail, the volume lobe with a slope of its own",
         "Renhorn and Boreman 2008",
     ),
+    // The members of Eq. 5 that have names of their own, with the parameters that their authors gave them.
+    Model {
+        name: "cook-torrance",
+        what: "Cook and Torrance's: Eq. 14 without its volume lobe",
+        source: "Cook and Torrance 1982",
+        parameters: parameters_of::<Microfacet<{ D | S | A }>, 5, 6>(),
+        terms: D | S | A,
+        whole: whole::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(D | S | A),
+        sets: &[],
+    },
+    microfacet::<{ D | S }, Ggx, Smith, 4, 8>(
+        "walter",
+        "Walter's reflection of a dielectric: GGX, Smith masking, no volume lobe, kappa = 0; Lambert's floor is added",
+        "Walter, Marschner, Li and Torrance 2007, Eq. 20, 33 and 34",
+    ),
     Model::own::<Own<Abg>, 4, 8>(
         "abg",
         "ABg scatter around the specular direction, Lambert's floor",
@@ -95,8 +110,8 @@ where
         what,
         source,
         parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
-        terms: ALL,
-        whole: whole::<Microfacet<TERMS, D, M>, P, C, AVX2>(ALL),
+        terms: TERMS & ALL,
+        whole: whole::<Microfacet<TERMS, D, M>, P, C, AVX2>(TERMS & ALL),
         sets: &[],
     }
 }

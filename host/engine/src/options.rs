@@ -38,8 +38,6 @@ pub struct FitOptions {
     pub model: &'static Model,
     /// The terms of it that the scene needs, one of [`TERM_SETS`]; others are left out. Without meaning for a model that has none.
     pub terms: u8,
-    /// Let the scan choose among the sets of the program's `choose` in place of `terms`; [`crate::fit`] does not look at it.
-    pub choose_terms: bool,
     /// Least values of the model's parameters; those of its description by default, for Eq. 14 Table 1.
     pub lower: Values,
     /// Largest values.
@@ -69,7 +67,6 @@ impl FitOptions {
             starts: None,
             model,
             terms: ALL,
-            choose_terms: false,
             lower: model.lower(),
             upper: model.upper(),
             precision: Precision::F64,

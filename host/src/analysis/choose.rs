@@ -1,12 +1,12 @@
-//! The smallest set of terms that a scan supports.
+//! The model, and the set of its terms, that a scan supports: the least BIC of several candidates.
 
 use brdfit_core::brdf::DIFFUSE;
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use rayon::prelude::*;
 
-use crate::engine::robust;
-use crate::engine::{self, FitError, FitOptions, Outcome, Precision, TERM_SETS};
+use super::criteria::{Criteria, counted};
+use crate::engine::robust::{self, Robust};
+use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until};
 
 /// The compiled sets with a diffuse term, in order of size, each with the one that it is tested against.
 pub const SETS: [(u8, Option<u8>); 5] = {
@@ -40,150 +40,204 @@ const fn tested_against(terms: u8) -> Option<u8> {
     best
 }
 
-/// One set of terms, fitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a scan is to be fitted with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// One model.
+    One(FitOptions),
+    /// The best of these, at least one, which differ in model, terms and bounds alone.
+    Best(Vec<FitOptions>),
+}
+
+impl Wanted {
+    /// All that may be fitted.
+    pub fn candidates(&self) -> &[FitOptions] {
+        match self {
+            Wanted::One(options) => std::slice::from_ref(options),
+            Wanted::Best(list) => list,
+        }
+    }
+
+    /// The models of the candidates, each once.
+    pub fn models(&self) -> Vec<&'static Model> {
+        models(self.candidates())
+    }
+
+    /// The same, given up when `until` says so.
+    pub fn until(&self, until: Until) -> Wanted {
+        let with = |options: &FitOptions| FitOptions { until, ..*options };
+        match self {
+            Wanted::One(options) => Wanted::One(with(options)),
+            Wanted::Best(list) => Wanted::Best(list.iter().map(with).collect()),
+        }
+    }
+}
+
+/// The models of some candidates, each once.
+fn models(candidates: &[FitOptions]) -> Vec<&'static Model> {
+    let mut models: Vec<_> = candidates.iter().map(|options| options.model).collect();
+    models.dedup();
+    models
+}
+
+/// The same options with each set of terms that the model has and their bounds permit; one if it has none.
+pub fn sets(options: &FitOptions) -> Vec<FitOptions> {
+    let all = options.model.terms;
+    if all == 0 {
+        return vec![*options];
+    }
+    let sets = SETS.iter().filter(|&&(terms, _)| terms & !all == 0);
+    let sets = sets.map(|&(terms, _)| FitOptions { terms, ..*options });
+    sets.filter(allowed).collect()
+}
+
+/// Do the bounds permit what the terms leave out?
+fn allowed(options: &FitOptions) -> bool {
+    (0..options.lower.len()).all(|place| {
+        let matters = options.model.absent(place) == 0.0;
+        !(options.model.left_out(options.terms, place) && matters) || options.lower[place] <= 0.0
+    })
+}
+
+/// One candidate, fitted.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The terms.
-    pub terms: u8,
-    /// Number of its free parameters.
-    pub parameters: usize,
-    /// Sum of squared residuals of ln f.
-    pub cost: f64,
-    /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
-    pub aicc: f64,
-    /// Schwarz's criterion.
-    pub bic: f64,
+    /// How it was fitted.
+    pub options: FitOptions,
+    /// Its fit.
+    pub outcome: Outcome,
+    /// What it is judged by.
+    pub criteria: Criteria,
     /// Probability of at least this fall of the cost by chance, by the F test against the smaller set of [`SETS`]; `None` if that was not fitted or has as many parameters.
     pub p_value: Option<f64>,
 }
 
-/// How the terms were chosen: the least BIC.
+/// How a fit was chosen: the least BIC.
 ///
 /// AICc lets in a parameter that nothing needs in one case of six however many samples there are; BIC in one of forty with 170, and in fewer with more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Every set that was fitted, in the order of [`SETS`].
+    /// Every candidate that was fitted, in the order given; those with more parameters than samples are not.
     pub candidates: Vec<Candidate>,
-    /// The chosen set.
-    pub terms: u8,
+    /// Place of the chosen one.
+    pub place: usize,
 }
 
-/// A fit with the terms that `options` ask for, or with those that the scan supports; with the options that name them, and why.
+impl Choice {
+    /// The chosen one.
+    pub fn chosen(&self) -> &Candidate {
+        &self.candidates[self.place]
+    }
+
+    /// The models of the candidates, each once.
+    pub fn models(&self) -> Vec<&'static Model> {
+        let options: Vec<_> = self.candidates.iter().map(|one| one.options).collect();
+        models(&options)
+    }
+
+    /// Were sets of terms of this model compared?
+    pub fn chose_terms(&self, model: &Model) -> bool {
+        self.candidates.iter().filter(|one| one.options.model == model).count() > 1
+    }
+
+    /// The least of a number of the candidates.
+    pub fn least(&self, of: fn(&Candidate) -> f64) -> f64 {
+        self.candidates.iter().map(of).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// A fit with what is wanted, or with what the scan supports of it; with the options of that fit, and why.
 ///
 /// # Errors
-/// [`FitError`].
-pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<(FitOptions, Outcome, Option<Choice>), FitError> {
-    if !options.choose_terms {
-        return Ok((*options, engine::fit(samples, options)?, None));
-    }
-    // Outliers are those of the richest model, so that every set is judged by the same samples.
-    let (samples, robust) = if options.robust {
-        let outcome = engine::fit(samples, options)?;
-        (robust::kept(samples, &outcome), outcome.robust)
-    } else {
-        (samples.to_vec(), None)
-    };
-    let samples = &samples[..];
-    let mut candidates: Vec<Candidate> = Vec::new();
-    let mut best: Option<(FitOptions, Outcome, f64)> = None;
-    for (terms, smaller) in SETS.into_iter().filter(|&(terms, _)| allowed(terms, options)) {
-        let options = FitOptions {
-            terms,
-            robust: false,
-            ..*options
-        };
-        let outcome = match engine::fit(samples, &options) {
-            Ok(outcome) => outcome,
-            // The smallest set tells what is wrong with the scan; a larger one that needs more samples is left out.
-            Err(FitError::TooFew(..)) if best.is_some() => continue,
-            Err(error) => return Err(error),
-        };
-        let smaller = candidates.iter().find(|other| Some(other.terms) == smaller).copied();
-        let candidate = judge(samples, &options, &outcome, smaller);
-        candidates.push(candidate);
-        if best.as_ref().is_none_or(|(.., bic)| candidate.bic < *bic) {
-            best = Some((options, outcome, candidate.bic));
+/// [`FitError`]; of several candidates that of the one with the fewest parameters, if none can be fitted.
+pub fn fit(samples: &[Sample<f64>], wanted: &Wanted) -> Result<(FitOptions, Outcome, Option<Choice>), FitError> {
+    match wanted {
+        Wanted::One(options) => Ok((*options, engine::fit(samples, options)?, None)),
+        Wanted::Best(list) => {
+            let (samples, robust) = without_outliers(samples, list)?;
+            let choice = choose(&samples, list)?;
+            let Candidate { options, outcome, .. } = choice.chosen();
+            let (mut options, mut outcome) = (*options, outcome.clone());
+            (options.robust, outcome.robust) = (robust.is_some(), robust);
+            Ok((options, outcome, Some(choice)))
         }
     }
-    let (mut chosen, mut outcome, _) = best.ok_or(FitError::Terms(options.terms))?;
-    (chosen.robust, outcome.robust) = (options.robust, robust);
-    let choice = Choice {
-        candidates,
-        terms: chosen.terms,
-    };
-    Ok((chosen, outcome, Some(choice)))
 }
 
-/// Do the bounds permit what the set leaves out?
-fn allowed(terms: u8, options: &FitOptions) -> bool {
-    (0..options.lower.len()).all(|place| {
-        let matters = options.model.absent(place) == 0.0;
-        !(options.model.left_out(terms, place) && matters) || options.lower[place] <= 0.0
-    })
+/// The samples that every candidate is judged by: if outliers are left out, those kept by the richest set of the model whose robust scale is the least.
+fn without_outliers(
+    samples: &[Sample<f64>],
+    list: &[FitOptions],
+) -> Result<(Vec<Sample<f64>>, Option<Robust>), FitError> {
+    let by_model = list.chunk_by(|a, b| a.model == b.model);
+    let richest = by_model.filter_map(|sets| sets.last().filter(|options| options.robust));
+    let richest: Vec<FitOptions> = richest.copied().collect();
+    if richest.is_empty() {
+        return Ok((samples.to_vec(), None));
+    }
+    let fitted = fit_each(samples, &richest)?;
+    let scale = |outcome: &Outcome| outcome.robust.as_ref().map_or(f64::INFINITY, |robust| robust.scale);
+    let best = fitted.iter().min_by(|(_, a), (_, b)| scale(a).total_cmp(&scale(b)));
+    Ok(best.map_or((samples.to_vec(), None), |(_, best)| {
+        (robust::kept(samples, best), best.robust.clone())
+    }))
 }
 
-/// What a fit is judged by, beside others of the same samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Criteria {
-    /// Number of its free parameters.
-    pub parameters: usize,
-    /// Samples of weight above 0.
-    pub samples: f64,
-    /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
-    pub aicc: f64,
-    /// Schwarz's criterion.
-    pub bic: f64,
-}
-
-/// The criteria of a fit of this cost.
-pub fn criteria(samples: &[Sample<f64>], options: &FitOptions, cost: f64) -> Criteria {
-    let parameters = options.free().count();
-    let samples = samples.iter().filter(|sample| sample.weight != 0.0).count() as f64;
-    let cost = cost.max(rounding(samples, options));
-    // The variance of the residuals is a parameter too.
-    let k = parameters as f64 + 1.0;
-    let deviance = samples * Real::ln(cost / samples);
-    let room = samples - k - 1.0;
-    Criteria {
-        parameters,
-        samples,
-        aicc: if room > 0.0 {
-            deviance + 2.0 * k + 2.0 * k * (k + 1.0) / room
-        } else {
-            f64::INFINITY
-        },
-        bic: deviance + k * Real::ln(samples),
+/// Fits every candidate that has no more parameters than there are samples.
+fn fit_each(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Vec<(FitOptions, Outcome)>, FitError> {
+    let fits: Vec<_> = list
+        .par_iter()
+        .map(|options| engine::fit(samples, options).map(|outcome| (*options, outcome)))
+        .collect();
+    let mut fitted = Vec::new();
+    let mut fewest: Option<(usize, FitError)> = None;
+    for fit in fits {
+        match fit {
+            Ok(fit) => fitted.push(fit),
+            Err(error @ FitError::TooFew(_, parameters)) => {
+                if fewest.is_none_or(|(known, _)| parameters < known) {
+                    fewest = Some((parameters, error));
+                }
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    match fewest {
+        Some((_, error)) if fitted.is_empty() => Err(error),
+        _ => Ok(fitted),
     }
 }
 
-/// A cost below this is rounding, of which no criterion may make anything.
-fn rounding(samples: f64, options: &FitOptions) -> f64 {
-    let residual = match options.precision {
-        Precision::F64 => 1e-10,
-        Precision::F32 => 1e-5,
+/// Fits every candidate to the same samples, and judges them; outliers are not looked for.
+///
+/// # Errors
+/// [`FitError`]; that of the candidate with the fewest parameters if samples suffice for none.
+pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, FitError> {
+    let plain = |options: &FitOptions| FitOptions {
+        robust: false,
+        ..*options
     };
-    samples * residual * residual
-}
-
-fn judge(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, smaller: Option<Candidate>) -> Candidate {
-    let criteria = criteria(samples, options, outcome.cost);
-    let cost = outcome.cost.max(rounding(criteria.samples, options));
-    let p_value = smaller
-        .filter(|smaller| smaller.parameters < criteria.parameters)
-        .and_then(|smaller| {
-            let more = (criteria.parameters - smaller.parameters) as f64;
-            let left = criteria.samples - criteria.parameters as f64;
-            let f = (smaller.cost.max(cost) - cost) / more / (cost / left);
-            FisherSnedecor::new(more, left).ok().map(|chance| chance.sf(f))
+    let list: Vec<FitOptions> = list.iter().map(plain).collect();
+    let mut candidates: Vec<Candidate> = Vec::new();
+    for (options, outcome) in fit_each(samples, &list)? {
+        let free = options.free().count();
+        let criteria = Criteria::new(counted(samples), free, outcome.cost, options.precision);
+        let tested = SETS.iter().find(|(terms, _)| *terms == options.terms);
+        let smaller = candidates.iter().find(|other| {
+            other.options.model == options.model && tested.is_some_and(|(_, set)| *set == Some(other.options.terms))
         });
-    Candidate {
-        terms: options.terms,
-        parameters: criteria.parameters,
-        cost: outcome.cost,
-        aicc: criteria.aicc,
-        bic: criteria.bic,
-        p_value,
+        let p_value = smaller.and_then(|smaller| criteria.p_value(&smaller.criteria));
+        candidates.push(Candidate {
+            options,
+            outcome,
+            criteria,
+            p_value,
+        });
     }
+    let bic = |place: &usize| candidates[*place].criteria.bic;
+    let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
+    let place = place.ok_or(FitError::Terms(0))?;
+    Ok(Choice { candidates, place })
 }
 
 #[cfg(test)]

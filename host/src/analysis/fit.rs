@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use brdfit_core::geometry::Sample;
 
-use super::choose::{self, Choice};
+use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
 use super::hints::{self, Hint};
 use crate::engine::{FitOptions, Material, Outcome};
@@ -32,7 +32,7 @@ pub struct FittedScan {
     pub outcome: Outcome,
     /// Sum of squared residuals of ln f over their variances, if the file gives standard deviations; that of a right model is near the degrees of freedom.
     pub chi2: Option<f64>,
-    /// Why these terms, if the scan chose them.
+    /// Why this model and these terms, if the scan chose them.
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
     pub derived: Vec<Derived>,
@@ -88,13 +88,13 @@ impl FittedScan {
     }
 }
 
-/// Fits one scan.
+/// Fits one scan with what is wanted.
 ///
 /// # Errors
 /// The scan has too few samples, or no start gives a finite model.
-pub fn fit(measurement: &Measurement, options: &FitOptions) -> Result<FittedScan, Error> {
+pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
     let begun = Instant::now();
-    let found = choose::fit(&measurement.samples, options);
+    let found = choose::fit(&measurement.samples, wanted);
     let elapsed = begun.elapsed();
     match found {
         Ok((_, outcome, _)) if !outcome.cost.is_finite() => Err(Error::new("no start gives a finite model")

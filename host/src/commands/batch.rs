@@ -15,6 +15,7 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::analysis::choose::Wanted;
 use crate::engine::simd::Simd;
 use crate::engine::{FitOptions, Until};
 use crate::error::Error;
@@ -70,7 +71,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         return Err(Error::new("a part of a batch needs a file").help("give --out a name"));
     }
     let form = Form::of(out, arguments.format)?;
-    let options = arguments.search.fit_options()?;
+    let wanted = arguments.search.wanted()?;
     arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
     // Lists of names are inputs too.
@@ -80,10 +81,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(shard) => Some(Target::new(&record::shard_path(out, shard), &inputs)?),
         None => output::target(Some(out), &inputs)?,
     };
-    let models = vec![options.model];
+    let models = wanted.models();
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
-        options: asked_for(options, arguments),
+        options: asked_for(&wanted, arguments),
         files: files.len(),
         names: record::names(&files),
         rows: form.rows(),
@@ -118,10 +119,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let interrupt = interrupt::keeping();
     let job = run::Job {
         files: &files,
-        options: FitOptions {
-            until: Until::set(interrupt),
-            ..options
-        },
+        wanted: &wanted.until(Until::set(interrupt)),
         models,
         read: &arguments.read,
         rows: head.rows,
@@ -200,13 +198,14 @@ fn part(head: &Head, records: &mut dyn Iterator<Item = Result<Record, Error>>, f
 }
 
 /// Everything that changes a result, as text.
-fn asked_for(options: FitOptions, arguments: &Arguments) -> String {
+fn asked_for(wanted: &Wanted, arguments: &Arguments) -> String {
     // The machines of a cluster differ in their instructions, and give the same bits.
-    let options = FitOptions {
+    let portable = |options: &FitOptions| FitOptions {
         simd: Simd::Portable,
-        ..options
+        ..*options
     };
-    format!("{options:?}, {:?}", arguments.read)
+    let candidates: Vec<FitOptions> = wanted.candidates().iter().map(portable).collect();
+    format!("{candidates:?}, {:?}", arguments.read)
 }
 
 fn progress(shown: bool, files: usize) -> ProgressBar {

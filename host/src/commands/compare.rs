@@ -5,29 +5,28 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use crate::analysis::choose::{Criteria, criteria};
-use crate::engine::models::MODELS;
-use crate::engine::{self, FitOptions, Model, Outcome};
+use crate::analysis::choose::{Candidate, Choice, choose};
+use crate::engine::{FitOptions, Model, Outcome};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::four;
 use crate::output::{self, Format, OutputArguments, deliver};
-use crate::parameters;
+use crate::parameters::models;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
 use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
-/// Fits models of other lobes beside that of the paper, and tells which the scan needs
+/// Fits several models to a scan, and tells which it needs: the one that `brdfit fit --model auto` takes
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  brdfit compare paint.csv --models beckmann,ggx,beckmann-second --plot paint.svg")]
 pub struct Arguments {
     /// A scan, as `brdfit fit` reads it; - is standard input
     #[arg(value_name = "SCAN")]
     scan: PathBuf,
-    /// Models to compare, with commas between [default: all]
-    #[arg(long, value_name = "LIST")]
-    models: Option<String>,
+    /// Models to compare, with commas between, or auto for all
+    #[arg(long, value_name = "LIST", default_value = "auto")]
+    models: String,
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
@@ -45,91 +44,64 @@ pub struct Arguments {
 /// # Errors
 /// An unknown model, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let models = models(arguments.models.as_deref())?;
+    let models = models(&arguments.models)?;
     let inputs = std::slice::from_ref(&arguments.scan);
     let (target, plot) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
-    let fits = compare(&models, &measurement, arguments.seed)?;
+    let options = |model: &'static Model| FitOptions {
+        seed: arguments.seed,
+        ..FitOptions::of(model)
+    };
+    let candidates: Vec<FitOptions> = models.into_iter().map(options).collect();
+    let fitted = choose(&measurement.samples, &candidates);
+    let choice = fitted.map_err(|error| input::explain(&measurement, error))?;
     let text = match arguments.output.format {
-        Format::Text => text(&measurement, &fits),
-        Format::Json => json(&measurement, &fits),
+        Format::Text => text(&measurement, &choice),
+        Format::Json => json(&measurement, &choice),
     };
     if let Some(plot) = &plot {
-        picture::save(plot, &picture(&measurement, &fits))?;
+        picture::save(plot, &picture(&measurement, &choice))?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }
 
-/// The models of a list, or all.
-pub fn models(list: Option<&str>) -> Result<Vec<&'static Model>, Error> {
-    match list {
-        None => Ok(MODELS.iter().collect()),
-        Some(list) => list.split(',').map(parameters::model).collect(),
-    }
-}
-
-/// A model's fit.
-struct Judged {
-    outcome: Outcome,
-    criteria: Criteria,
-}
-
-/// Fits each model, on all threads.
-fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Judged>, Error> {
-    use rayon::prelude::*;
-    let samples = &measurement.samples;
-    let fits: Vec<_> = models
-        .par_iter()
-        .map(|model| {
-            let options = FitOptions {
-                seed,
-                ..FitOptions::of(model)
-            };
-            let outcome = engine::fit(samples, &options)?;
-            let criteria = criteria(samples, &options, outcome.cost);
-            Ok(Judged { outcome, criteria })
-        })
-        .collect();
-    let each = fits.into_iter();
-    each.map(|fit| fit.map_err(|error| input::explain(measurement, error)))
-        .collect()
-}
-
-fn least_aicc(fits: &[Judged]) -> f64 {
-    fits.iter().map(|fit| fit.criteria.aicc).fold(f64::INFINITY, f64::min)
-}
-
-fn text(measurement: &Measurement, fits: &[Judged]) -> String {
-    let least = least_aicc(fits);
+fn text(measurement: &Measurement, choice: &Choice) -> String {
+    let (least_aicc, least_bic) = (
+        choice.least(|one| one.criteria.aicc),
+        choice.least(|one| one.criteria.bic),
+    );
     let mut lines = vec![
         format!("{}: {} samples", measurement.label(), measurement.samples.len()),
-        "  model                   P        MSE^2  rms ln    AICc  minima  parameters".to_string(),
+        "  model                   P        MSE^2  rms ln    AICc     BIC  minima  parameters".to_string(),
     ];
-    for Judged { outcome, criteria } in fits {
+    for (place, Candidate { outcome, criteria, .. }) in choice.candidates.iter().enumerate() {
         let values = outcome.model.named(&outcome.params);
         let values: Vec<_> = values.map(|(name, value)| format!("{name} {}", four(value))).collect();
-        let mark = if criteria.aicc == least { '*' } else { ' ' };
+        let mark = if place == choice.place { '*' } else { ' ' };
         lines.push(format!(
-            "{mark} {:<22} {:>2} {:>12.4e} {:>7.4} {:>7.1} {:>7}  {}",
+            "{mark} {:<22} {:>2} {:>12.4e} {:>7.4} {:>7.1} {:>7.1} {:>7}  {}",
             outcome.model.name,
             criteria.parameters,
             outcome.mse2,
             outcome.rms_ln,
-            criteria.aicc - least,
+            criteria.aicc - least_aicc,
+            criteria.bic - least_bic,
             outcome.minima.len(),
             values.join(", "),
         ));
     }
-    lines.push("  AICc is above the least, which * has; a difference of 10 leaves no doubt.".to_string());
+    lines.push(
+        "  AICc and BIC are above their least; * has the least BIC; a difference of 10 leaves no doubt.".to_string(),
+    );
     lines.join("\n") + "\n"
 }
 
-fn json(measurement: &Measurement, fits: &[Judged]) -> String {
-    let models: Vec<_> = fits
-        .iter()
-        .map(|Judged { outcome, criteria }| {
+fn json(measurement: &Measurement, choice: &Choice) -> String {
+    let candidates = choice.candidates.iter();
+    let models: Vec<_> = candidates
+        .map(|Candidate { outcome, criteria, .. }| {
             json!({
                 "model": outcome.model.name,
                 "mse2": outcome.mse2,
@@ -141,12 +113,19 @@ fn json(measurement: &Measurement, fits: &[Judged]) -> String {
             })
         })
         .collect();
-    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models, "provenance": provenance(&measurement.about, None) });
+    let value = json!({
+        "scan": measurement.label(),
+        "samples": measurement.samples.len(),
+        "model": choice.chosen().outcome.model.name,
+        "criterion": "bic",
+        "models": models,
+        "provenance": provenance(&measurement.about, None),
+    });
     output::json(&value)
 }
 
-fn picture(measurement: &Measurement, fits: &[Judged]) -> String {
-    let mut best_first: Vec<&Outcome> = fits.iter().map(|fit| &fit.outcome).collect();
+fn picture(measurement: &Measurement, choice: &Choice) -> String {
+    let mut best_first: Vec<&Outcome> = choice.candidates.iter().map(|one| &one.outcome).collect();
     best_first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let lines: Vec<_> = best_first
         .into_iter()

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use crate::error::Error;
 use crate::export::model::Model;
-use crate::export::{bird, constants, glsl, mitsuba, native, openmaterial, zemax};
+use crate::export::{abg, bird, constants, glsl, mitsuba, native, openmaterial, zemax};
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
 use crate::output::{deliver, target};
@@ -58,6 +58,10 @@ pub struct Arguments {
 enum Form {
     /// Zemax tabular BSDF
     Zemax,
+    /// Zemax OpticStudio's own ABg, of --model abg
+    ZemaxAbg,
+    /// FRED's own ABg as a script, of --model abg
+    Fred,
     /// BRDF Explorer, .brdf
     Glsl,
     /// Mitsuba 3, the exact model in Python
@@ -100,6 +104,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     }
     let text = match arguments.to {
         Form::Zemax => zemax::write(&model),
+        Form::ZemaxAbg => abg::zemax(&model)?,
+        Form::Fred => abg::fred(&model)?,
         Form::Glsl => glsl::write(&model)?,
         Form::Mitsuba => mitsuba::write(&model)?,
         Form::MitsubaNative => {

@@ -8,6 +8,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use crate::analysis::choose::Wanted;
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::{FitOptions, Material, Method, Until};
 use crate::error::Error;
@@ -50,29 +51,26 @@ pub struct Arguments {
 /// # Errors
 /// The first thing that is wrong with options, files or the fit.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
-    let options = arguments.search.fit_options()?;
+    let wanted = arguments.search.wanted()?;
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), &arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if arguments.plot.is_some() && measurements.len() > 1 {
         return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
     }
     let pool = arguments.search.pool()?;
-    let bar = progress(streams.progress, &options, measurements.len());
+    let bar = progress(streams.progress, &wanted, measurements.len());
     // Of one scan nothing is finished before all is.
     let several = measurements.len() > 1;
     let interrupt = several.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
-    let options = FitOptions {
-        until: interrupt.map_or_else(Until::default, Until::set),
-        ..options
-    };
+    let wanted = wanted.until(interrupt.map_or_else(Until::default, Until::set));
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {
             if interrupted() {
                 return None;
             }
-            let report = fit(measurement, &options);
+            let report = fit(measurement, &wanted);
             bar.inc(1);
             Some(report).filter(|report| report.is_ok() || !interrupted())
         })
@@ -125,13 +123,15 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 }
 
 /// A bar over the scans if there are several, a clock if one takes long.
-fn progress(shown: bool, options: &FitOptions, scans: usize) -> ProgressBar {
-    let long = options.method == Method::Paper;
+fn progress(shown: bool, wanted: &Wanted, scans: usize) -> ProgressBar {
+    let candidates = wanted.candidates();
+    let long = candidates.iter().any(|options| options.method == Method::Paper);
     if !shown || (scans == 1 && !long) {
         return ProgressBar::hidden();
     }
     if scans == 1 {
-        let clock = ProgressBar::new_spinner().with_message(format!("{} starts", options.starts()));
+        let starts: u32 = candidates.iter().map(FitOptions::starts).sum();
+        let clock = ProgressBar::new_spinner().with_message(format!("{starts} starts"));
         clock.enable_steady_tick(Duration::from_millis(100));
         return clock;
     }

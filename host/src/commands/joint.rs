@@ -3,12 +3,14 @@
 use std::path::PathBuf;
 
 use brdfit_core::geometry::Sample;
-use brdfit_engine::joint::{Fitted, SCANS, fit};
 use clap::Args;
 use serde_json::{Value, json};
 
+use crate::analysis::choose::Wanted;
+use crate::analysis::joint::{self, Candidate};
+use crate::engine::joint::SCANS;
 use crate::engine::{FitOptions, Model};
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::{four, two};
 use crate::options::SearchArguments;
@@ -17,6 +19,7 @@ use crate::parameters::parameter;
 use crate::result::json::ByName;
 use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
+use crate::terms::term_names;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]
@@ -41,8 +44,7 @@ pub struct Arguments {
 /// # Errors
 /// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let options = arguments.search.fit_options()?;
-    let shared = shared(options.model, &arguments.share)?;
+    let candidates = with_shared(&arguments.search.wanted()?, &arguments.share)?;
     let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
@@ -53,16 +55,35 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     }
     let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let pool = arguments.search.pool()?;
-    let fitted = pool
-        .install(|| fit(&samples, &shared, &options))
+    let fits = pool
+        .install(|| joint::fit(&samples, &candidates))
         .map_err(|(place, error)| input::explain(&measurements[place], error))?;
+    let best = joint::best(&fits).ok_or_else(|| Error::new("there is no model to fit"))?;
     let text = match arguments.output.format {
-        Format::Text => text(&options, &measurements, &fitted),
-        Format::Json => json(&options, &measurements, &fitted),
+        Format::Text => text(&fits, best, &measurements),
+        Format::Json => json(&fits, best, &measurements),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
+}
+
+/// What is wanted of the models that have all the parameters to share, with the places of these.
+fn with_shared(wanted: &Wanted, list: &str) -> Result<Vec<(FitOptions, Vec<bool>)>, Error> {
+    let each = wanted.candidates().iter();
+    let each = each.map(|options| shared(options.model, list).map(|shared| (*options, shared)));
+    if let Wanted::One(_) = wanted {
+        return each.collect();
+    }
+    let able: Vec<_> = each.filter_map(Result::ok).collect();
+    if able.is_empty() {
+        return Err(Error::new(format!(
+            "no model of the list has all parameters of --share {}",
+            shown(list)
+        ))
+        .help("share parameters of one model"));
+    }
+    Ok(able)
 }
 
 fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
@@ -73,7 +94,8 @@ fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
     Ok(shared)
 }
 
-fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> String {
+fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> String {
+    let Candidate { options, fitted, .. } = best;
     let name = |k: usize| options.model.parameters[k].name;
     let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
     let names: Vec<&str> = present(true).map(name).collect();
@@ -104,11 +126,36 @@ fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
         rms(fitted.separate)
     ));
     lines.push("  ± is one standard error; none where a parameter is on a bound or undetermined.".to_string());
+    if fits.len() > 1 {
+        lines.extend(table(fits, best));
+    }
     lines.join("\n") + "\n"
 }
 
-fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> String {
-    let model = options.model;
+/// What the best was chosen from.
+fn table(fits: &[Candidate], best: &Candidate) -> Vec<String> {
+    let least = |of: fn(&Candidate) -> f64| fits.iter().map(of).fold(f64::INFINITY, f64::min);
+    let (aicc, bic) = (least(|one| one.criteria.aicc), least(|one| one.criteria.bic));
+    let mut lines = vec!["  model                     P  rms ln f    AICc     BIC  terms".to_string()];
+    lines.extend(fits.iter().map(|one| {
+        let mark = if std::ptr::eq(one, best) { '*' } else { ' ' };
+        let line = format!(
+            "{mark} {:<22} {:>4}  {:>8.5} {:>7.1} {:>7.1}  {}",
+            one.options.model.name,
+            one.criteria.parameters,
+            (one.fitted.cost / one.fitted.samples as f64).sqrt(),
+            one.criteria.aicc - aicc,
+            one.criteria.bic - bic,
+            term_names(one.options.terms & one.options.model.terms).join(", "),
+        );
+        line.trim_end().to_string()
+    }));
+    lines.push("  AICc and BIC above their least; * has the least BIC.".to_string());
+    lines
+}
+
+fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> String {
+    let (model, fitted) = (best.options.model, &best.fitted);
     let shared: Vec<&str> = (0..fitted.shared.len())
         .filter(|&k| fitted.shared[k])
         .map(|k| model.parameters[k].name)
@@ -121,12 +168,26 @@ fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
-                "provenance": provenance(&measurement.about, Some(options)),
+                "provenance": provenance(&measurement.about, Some(&best.options)),
             })
         })
         .collect();
+    let candidate = |one: &Candidate| {
+        json!({
+            "model": one.options.model.name,
+            "terms": term_names(one.options.terms & one.options.model.terms),
+            "parameters": one.criteria.parameters,
+            "cost": one.fitted.cost,
+            "aicc": one.criteria.aicc,
+            "bic": one.criteria.bic,
+        })
+    };
+    let candidates: Vec<Value> = fits.iter().map(candidate).collect();
+    let selection = (fits.len() > 1).then(|| json!({ "criterion": "bic", "candidates": candidates }));
     let value = json!({
         "model": model.name,
+        "terms": term_names(best.options.terms & model.terms),
+        "selection": selection,
         "shared": shared,
         "samples": fitted.samples,
         "cost": fitted.cost,

@@ -14,7 +14,7 @@ use crate::analysis::choose;
 use crate::analysis::profile::calibrate::{LEVELS, threshold};
 use crate::analysis::profile::{End, Profile, profile};
 use crate::engine::{FitError, FitOptions, robust};
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::SearchArguments;
 use crate::output::{Format, OutputArguments, deliver};
@@ -55,31 +55,31 @@ pub struct Arguments {
 /// # Errors
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let options = arguments.search.fit_options()?;
+    let wanted = arguments.search.wanted()?;
     let inputs = std::slice::from_ref(&arguments.scan);
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let pool = arguments.search.pool()?;
     let samples = &measurement.samples;
     let found = pool.install(|| -> Result<_, FitError> {
-        let (options, outcome, _) = choose::fit(samples, &options)?;
+        let (options, outcome, choice) = choose::fit(samples, &wanted)?;
         let samples = &robust::kept(samples, &outcome)[..];
-        let options = FitOptions {
+        let plain = FitOptions {
             robust: false,
             ..options
         };
-        let parameters = match parameters(&arguments.parameter, &options) {
+        let parameters = match parameters(&arguments.parameter, &plain) {
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),
         };
         let each = parameters.par_iter();
         let calibrated = arguments.calibrate.unwrap_or(0);
-        let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
+        let profiles = each.map(|&index| profile(samples, &plain, &outcome, index, calibrated));
         let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
-        let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
-        Ok(Ok((outcome, profiles, copies)))
+        let copies = bootstrap(samples, &plain, &outcome, arguments.bootstrap.unwrap_or(0))?;
+        Ok(Ok((options, outcome, choice, profiles, copies)))
     });
-    let (outcome, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let (options, outcome, choice, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
     let fail = |what: &str| Error::new(what).in_file(measurement.label());
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
@@ -92,6 +92,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let findings = Findings {
         name: measurement.label(),
         outcome,
+        choice,
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),
@@ -142,12 +143,12 @@ fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Erro
     let one = |asked: &String| {
         let index = all.iter().copied().find(|&index| name(index) == asked.trim());
         index.ok_or_else(|| {
-            let terms = term_names(options.terms).join(",");
-            Error::new(format!(
-                "'{}' is not a free parameter of the terms {terms}",
-                crate::error::shown(asked)
-            ))
-            .help(format!("the free parameters are {}", known()))
+            let of = match options.model.terms {
+                0 => format!("model {}", options.model.name),
+                _ => format!("terms {}", term_names(options.terms).join(",")),
+            };
+            Error::new(format!("'{}' is not a free parameter of the {of}", shown(asked)))
+                .help(format!("the free parameters are {}", known()))
         })
     };
     names.iter().map(one).collect()

@@ -55,7 +55,7 @@ struct Subject {
 /// # Errors
 /// The first thing that is wrong with options, files or a fit.
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
-    let options = arguments.search.fit_options()?;
+    let wanted = arguments.search.wanted()?;
     arguments.read.refuse_together("report")?;
     // Results name further files, which are inputs too.
     let target = |inputs: &[PathBuf]| output::target(arguments.output.as_deref(), inputs);
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| {
         let each = subjects.par_iter();
         each.map(|Subject { measurement, stored }| {
-            let section = Section::new(measurement, &options)?;
+            let section = Section::new(measurement, &wanted)?;
             if let Some(stored) = stored {
                 results::agree(&section.label, &section.fit.outcome.material(), stored)?;
             }

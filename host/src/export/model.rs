@@ -120,7 +120,19 @@ impl Model {
     pub fn eq_14(&self, form: &str) -> Result<Params<f64>, Error> {
         self.material.eq_14().ok_or_else(|| {
             Error::new(format!("{form} cannot hold the model {}", self.material.model.name))
-                .help("--to zemax and --to bird take any model; or fit --model beckmann")
+                .help("--to zemax, bird and openmaterial take any model; or fit --model beckmann")
+        })
+    }
+
+    /// rho_d, A, B and g of ABg, for forms that know no other model.
+    ///
+    /// # Errors
+    /// It is another model.
+    pub fn abg(&self, form: &str) -> Result<[f64; 4], Error> {
+        let values = <[f64; 4]>::try_from(&self.material.values[..]).ok();
+        values.filter(|_| self.material.model.name == "abg").ok_or_else(|| {
+            Error::new(format!("{form} cannot hold the model {}", self.material.model.name))
+                .help("--to zemax, bird and openmaterial take any model; or fit --model abg")
         })
     }
 }

@@ -4,6 +4,7 @@ use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::section::{Section, Table};
+use crate::analysis::choose::Choice;
 use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::Outcome;
@@ -80,6 +81,7 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
             @if heading { h2 { (section.label) } }
             (summary(section))
             (parameters(section))
+            @if let Some(choice) = &section.fit.choice { (candidates(choice)) }
             @for (number, figure) in section.figures.iter().enumerate() {
                 figure {
                     (PreEscaped(inline(&figure.svg, &format!("{}-{}", place + 1, number + 1))))
@@ -149,6 +151,29 @@ fn parameters(section: &Section) -> Markup {
         }
         @let strong = correlated(section);
         @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (two(known.condition)) "." } }
+    }
+}
+
+/// What the model or its terms were chosen from.
+fn candidates(choice: &Choice) -> Markup {
+    let (aicc, bic) = (
+        choice.least(|one| one.criteria.aicc),
+        choice.least(|one| one.criteria.bic),
+    );
+    let above = |criterion: f64, least: f64| minus(&format!("{:.1}", criterion - least));
+    html! {
+        table {
+            caption { "What was compared: the fit is that of least BIC. AICc and BIC are given above their least; a difference of 10 leaves no doubt." }
+            thead { tr { th.text { "candidate" } th { "parameters" } th { "rms of ln " i { "f" } } th { "AICc" } th { "BIC" } } }
+            tbody {
+                @for (place, one) in choice.candidates.iter().enumerate() { tr {
+                    @let name = words::candidate(choice, one);
+                    td.text { @if place == choice.place { b { (name) } } @else { (name) } }
+                    td { (one.criteria.parameters) } td { (percent(one.outcome.rms_ln)) }
+                    td { (above(one.criteria.aicc, aicc)) } td { (above(one.criteria.bic, bic)) }
+                } }
+            }
+        }
     }
 }
 
@@ -269,7 +294,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
                 tr { th.text { "read as" } td.text { (fit.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
-                @if fit.choice.is_some() { tr { th.text { "choice" } td.text { "the fewest terms that the scan supports, by BIC" } } }
+                @if let Some(choice) = &fit.choice { tr { th.text { "choice" } td.text { (words::choice(choice)) } } }
             }
             tbody {
                 @for (cell, column) in numbers { tr {

@@ -1,5 +1,6 @@
 //! One scan: its fit, the fits from all starts, and what is drawn of both.
 
+use crate::analysis::choose::Wanted;
 use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
@@ -46,12 +47,12 @@ pub enum Table {
 }
 
 impl Section {
-    /// Fits a scan by `options`, and by the paper's method if that is another.
+    /// Fits a scan with what is wanted, and by the paper's method if that is another.
     ///
     /// # Errors
     /// The scan cannot be fitted.
-    pub fn new(measurement: &Measurement, options: &FitOptions) -> Result<Section, Error> {
-        let fit = fit(measurement, options)?;
+    pub fn new(measurement: &Measurement, wanted: &Wanted) -> Result<Section, Error> {
+        let fit = fit(measurement, wanted)?;
         let samples = robust::kept(&measurement.samples, &fit.outcome);
         let paper = FitOptions {
             method: Method::Paper,

@@ -95,6 +95,8 @@ pub fn cells(row: Written) -> io::Result<Vec<Cell>> {
 pub struct Line {
     /// The scan's name.
     pub scan: String,
+    /// Its model, if there was a choice.
+    pub model: Option<String>,
     /// Its angles of incidence in degrees.
     pub theta_i: Vec<f64>,
     /// Number of distinct minima.

@@ -16,7 +16,7 @@ use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::output;
 pub use by_name::ByName;
-use choice::{Selection, selection};
+pub use choice::{Selection, selection};
 use provenance::{Provenance, provenance};
 use uncertainty::{AtAngle, Known, at_angle, known};
 

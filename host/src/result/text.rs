@@ -1,6 +1,6 @@
 //! Reports as pages for people.
 
-mod choice;
+pub mod choice;
 mod uncertainty;
 
 use std::fmt::Write;

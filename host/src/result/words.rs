@@ -1,6 +1,6 @@
 //! Sentences on a fit.
 
-use crate::analysis::choose::Choice;
+use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
 use crate::analysis::undetermined::Undetermined;
 use crate::number::{four, percent, two};
@@ -33,11 +33,36 @@ pub fn sentence(what: &Undetermined) -> String {
 
 /// One sentence on what the scene needs.
 pub fn choice(choice: &Choice) -> String {
-    let left_out = term_names(ALL & !choice.terms);
-    let needs = format!("the scene needs {}", term_names(choice.terms).join(", "));
-    match left_out.is_empty() {
-        true => needs + ": every term pays",
-        false => format!("{needs}; the scan gives no evidence for {}", left_out.join(", ")),
+    let (model, terms) = (choice.chosen().options.model, choice.chosen().options.terms);
+    let mut parts = Vec::new();
+    let models = choice.models().len();
+    if models > 1 {
+        let others = choice.candidates.iter().filter(|one| one.options.model != model);
+        let next = others.min_by(|a, b| a.criteria.bic.total_cmp(&b.criteria.bic));
+        let next = next.map_or_else(String::new, |next| {
+            let above = next.criteria.bic - choice.chosen().criteria.bic;
+            format!("; that of {}, the next, is {above:.1} above", next.options.model.name)
+        });
+        parts.push(format!("of {models} models {} has the least BIC{next}", model.name));
+    }
+    if choice.chose_terms(model) || models == 1 {
+        let left_out = term_names(ALL & !terms);
+        let needs = format!("the scene needs {}", term_names(terms).join(", "));
+        parts.push(match left_out.is_empty() {
+            true => needs + ": every term pays",
+            false => format!("{needs}; the scan gives no evidence for {}", left_out.join(", ")),
+        });
+    }
+    parts.join("; ")
+}
+
+/// What a candidate is called among the others: its model, its terms, or both.
+pub fn candidate(choice: &Choice, one: &Candidate) -> String {
+    let (model, terms) = (one.options.model, term_names(one.options.terms).join(", "));
+    match (choice.models().len() > 1, choice.chose_terms(model)) {
+        (false, _) => terms,
+        (true, false) => model.name.to_string(),
+        (true, true) => format!("{}: {terms}", model.name),
     }
 }
 

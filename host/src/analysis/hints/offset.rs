@@ -4,8 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::in_plane;
-use crate::analysis::choose;
-use crate::engine::{FitOptions, Outcome};
+use crate::engine::{self, FitOptions, Outcome};
 use crate::input::{Measurement, plane};
 
 /// Smaller shifts are those of the mechanics, degrees.
@@ -89,7 +88,7 @@ pub fn confirmed(measurement: &Measurement, options: &FitOptions, outcome: &Outc
     let residual = |degrees: f64| {
         let samples = measurement.samples.iter();
         let moved: Vec<Sample<f64>> = samples.filter_map(|sample| back(sample, degrees)).collect();
-        choose::fit(&moved, options).map_or(f64::INFINITY, |(_, fit, _)| fit.rms_ln)
+        engine::fit(&moved, options).map_or(f64::INFINITY, |fit| fit.rms_ln)
     };
     // The parabola's place is right to about a fifth.
     let reach = (0.5 * seen.abs()).max(0.5);

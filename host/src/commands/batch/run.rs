@@ -6,8 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use crate::analysis::choose::Wanted;
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
-use crate::engine::{FitOptions, Model};
+use crate::engine::Model;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
 use crate::records::journal::Journal;
@@ -20,8 +21,8 @@ use crate::result::columns::{Column, Json, of_fits};
 pub struct Job<'a> {
     /// All files of the batch.
     pub files: &'a [PathBuf],
-    /// How they are fitted.
-    pub options: FitOptions,
+    /// What they are fitted with.
+    pub wanted: &'a Wanted,
     /// The models that results can be of.
     pub models: Vec<&'static Model>,
     /// How they are read.
@@ -67,7 +68,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
         if job.interrupt.load(Ordering::Relaxed) {
             return None;
         }
-        Some(match fit(&measurement, &job.options) {
+        Some(match fit(&measurement, job.wanted) {
             Ok(scan) => fitted(job, scan, &measurement),
             Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
@@ -97,6 +98,11 @@ fn line(scan: &FittedScan, measurement: &Measurement) -> Line {
     let minima = &scan.outcome.minima;
     Line {
         scan: measurement.label(),
+        model: scan
+            .choice
+            .as_ref()
+            .filter(|choice| choice.models().len() > 1)
+            .map(|_| scan.outcome.model.name.into()),
         theta_i: scan.angles.iter().map(AngleOfIncidence::degrees).collect(),
         minima: minima.len(),
         high: minima.last().map_or(scan.outcome.mse2, |worst| worst.mse2),

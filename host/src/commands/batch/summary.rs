@@ -94,16 +94,26 @@ impl Summary {
             |least: usize, width: &dyn Fn(&Line) -> usize| self.lines.iter().map(width).max().unwrap_or(0).max(least);
         let scan = widest(4, &|line| line.scan.chars().count());
         let theta_i = widest(13, &|line| angles(line).len());
+        let chosen = self.lines.iter().any(|line| line.model.is_some());
+        let model = |line: &Line| line.model.clone().unwrap_or_default();
+        let width = widest(5, &|line| model(line).len());
+        let with_model = |text: &str| match chosen {
+            true => format!("  {text:<width$}"),
+            false => String::new(),
+        };
         let mut page = format!(
-            "{:<scan$}  {:<theta_i$}  minima  high MSE^2   low MSE^2  improvement potential\n",
-            "scan", "theta_i, deg"
+            "{:<scan$}  {:<theta_i$}{}  minima  high MSE^2   low MSE^2  improvement potential\n",
+            "scan",
+            "theta_i, deg",
+            with_model("model")
         );
         for line in &self.lines {
             let _ = writeln!(
                 page,
-                "{:<scan$}  {:<theta_i$}  {:>6}  {:>10.2e}  {:>10.2e}  {}",
+                "{:<scan$}  {:<theta_i$}{}  {:>6}  {:>10.2e}  {:>10.2e}  {}",
                 line.scan,
                 angles(line),
+                with_model(&model(line)),
                 line.minima,
                 line.high,
                 line.low,
@@ -116,9 +126,10 @@ impl Summary {
         let (minima, potential) = (self.minima as f64 / count, self.improvement_potential / count);
         let _ = writeln!(
             page,
-            "{:<scan$}  {:<theta_i$}  {minima:>6.1}  {:>10}  {:>10}  {}",
+            "{:<scan$}  {:<theta_i$}{}  {minima:>6.1}  {:>10}  {:>10}  {}",
             "mean",
             "",
+            with_model(""),
             "",
             "",
             bar(potential)

@@ -1,5 +1,6 @@
 //! What the command found about one scan.
 
+use crate::analysis::choose::Choice;
 use crate::analysis::profile::Profile;
 use crate::engine::{FitOptions, Outcome, Values};
 use crate::input::About;
@@ -11,6 +12,8 @@ pub struct Findings {
     pub name: String,
     /// Its fit.
     pub outcome: Outcome,
+    /// Why that model and those terms, if the scan chose them.
+    pub choice: Option<Choice>,
     /// One for each parameter asked for.
     pub profiles: Vec<Profile>,
     /// The parameters of each copy; empty without bootstrap.

@@ -9,6 +9,7 @@ use crate::analysis::profile::{Interval, Profile};
 use crate::engine::Outcome;
 use crate::output;
 use crate::result::json::provenance::{Provenance, provenance};
+use crate::result::json::{Selection, selection};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -18,6 +19,7 @@ struct Document<'a> {
     /// Standard deviation of a residual of ln f.
     residual_scale: f64,
     degrees_of_freedom: usize,
+    selection: Option<Selection>,
     parameters: Vec<Parameter>,
     bootstrap: Option<Bootstrap>,
     /// Copies at each end of an interval whose thresholds are measured; null for those of the F test.
@@ -78,6 +80,7 @@ pub fn write(findings: &Findings) -> String {
         samples: findings.outcome.samples,
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
+        selection: findings.choice.as_ref().map(selection),
         parameters: findings
             .profiles
             .iter()

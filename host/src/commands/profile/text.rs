@@ -7,6 +7,7 @@ use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{End, Interval};
 use crate::number::{percent, significant, two};
+use crate::result::text::choice;
 
 /// The table of the intervals.
 pub fn write(findings: &Findings) -> String {
@@ -23,6 +24,10 @@ pub fn write(findings: &Findings) -> String {
         let line = format!("  {name:<9} {best:>11}  {error:>9}  {one:<26} {two}");
         let _ = writeln!(page, "{}", line.trim_end());
     };
+    if let Some(choice) = &findings.choice {
+        page += &choice::lines(choice).join("\n");
+        page += "\n\n";
+    }
     row(&mut page, ["", "best", "+-", "68 % interval", "95 % interval"]);
     let name = |index: usize| findings.outcome.model.parameters[index].name;
     let mut notes = String::new();

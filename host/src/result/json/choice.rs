@@ -1,12 +1,13 @@
-//! How the terms were chosen, as a part of the JSON contract.
+//! How the model or its terms were chosen, as a part of the JSON contract.
 
 use serde::Serialize;
 
+use super::ByName;
 use crate::analysis::choose::{Candidate, Choice};
 use crate::result::words;
 use crate::terms::term_names;
 
-/// How the terms were chosen, for the JSON contract.
+/// How the model or its terms were chosen, for the JSON contract.
 #[derive(Serialize)]
 pub struct Selection {
     criterion: &'static str,
@@ -16,9 +17,13 @@ pub struct Selection {
 
 #[derive(Serialize)]
 struct JsonCandidate {
+    model: &'static str,
     terms: Vec<&'static str>,
+    /// How many are free.
     parameters: usize,
+    values: ByName<f64>,
     cost: f64,
+    rms_ln: f64,
     aicc: f64,
     bic: f64,
     f_test_p: Option<f64>,
@@ -27,11 +32,14 @@ struct JsonCandidate {
 /// For the JSON contract.
 pub fn selection(choice: &Choice) -> Selection {
     let candidate = |one: &Candidate| JsonCandidate {
-        terms: term_names(one.terms),
-        parameters: one.parameters,
-        cost: one.cost,
-        aicc: one.aicc,
-        bic: one.bic,
+        model: one.options.model.name,
+        terms: term_names(one.outcome.terms),
+        parameters: one.criteria.parameters,
+        values: ByName::new(one.options.model, |place| one.outcome.params[place]),
+        cost: one.outcome.cost,
+        rms_ln: one.outcome.rms_ln,
+        aicc: one.criteria.aicc,
+        bic: one.criteria.bic,
         f_test_p: one.p_value,
     };
     Selection {

@@ -1,33 +1,43 @@
-//! How the terms were chosen, for the page of a fit.
+//! How the model or its terms were chosen, for the page of a fit.
 
 use crate::analysis::choose::{Candidate, Choice};
 use crate::number::two;
 use crate::result::words;
-use crate::terms::term_names;
 
-/// The table for the page of a fit.
+/// The table for pages.
 pub fn lines(choice: &Choice) -> Vec<String> {
-    let least = |of: fn(&Candidate) -> f64| choice.candidates.iter().map(of).fold(f64::INFINITY, f64::min);
-    let (aicc, bic) = (least(|one| one.aicc), least(|one| one.bic));
+    let (aicc, bic) = (
+        choice.least(|one| one.criteria.aicc),
+        choice.least(|one| one.criteria.bic),
+    );
+    let names = choice.candidates.iter().map(|one| words::candidate(choice, one));
+    let names: Vec<String> = names.collect();
+    let width = names.iter().map(String::len).max().unwrap_or(0).max(22);
+    let several = choice.models().len() > 1;
+    let tested = choice.candidates.iter().any(|one| one.p_value.is_some());
+    let head = if several { "model" } else { "terms" };
+    let test = if tested { "  F test" } else { "" };
     let mut lines = vec![
         format!("  choice     {}", words::choice(choice)),
-        "    terms                                   P  sum of squares   AICc    BIC  F test".into(),
+        format!("    {head:<width$}  P  rms ln f    AICc     BIC{test}"),
     ];
-    lines.extend(choice.candidates.iter().map(|one| {
-        let names = term_names(one.terms).join(", ");
+    let rows = choice.candidates.iter().zip(names).enumerate();
+    lines.extend(rows.map(|(place, (one, name))| {
+        let Candidate { outcome, criteria, .. } = one;
         let test = one.p_value.map_or_else(String::new, |p| format!("p = {}", two(p)));
-        let (aicc, bic) = (one.aicc - aicc, one.bic - bic);
-        let mark = if one.terms == choice.terms { '*' } else { ' ' };
-        let cost = format!("{:.4e}", one.cost);
-        format!(
-            "  {mark} {names:<38} {:>2} {cost:>15} {aicc:>6.1} {bic:>6.1}  {test}",
-            one.parameters
-        )
-        .trim_end()
-        .to_string()
+        let (aicc, bic) = (criteria.aicc - aicc, criteria.bic - bic);
+        let mark = if place == choice.place { '*' } else { ' ' };
+        let line = format!(
+            "  {mark} {name:<width$} {:>2}  {:>8.5} {aicc:>7.1} {bic:>7.1}  {test}",
+            criteria.parameters, outcome.rms_ln,
+        );
+        line.trim_end().to_string()
     }));
-    lines.push(
-        "    AICc and BIC above their least; * has the least BIC; F test against the set without the last term".into(),
-    );
+    let test = if tested {
+        "; F test against the set without the last term"
+    } else {
+        ""
+    };
+    lines.push(format!("    AICc and BIC above their least; * has the least BIC{test}"));
     lines
 }

@@ -6,6 +6,7 @@
 
 pub mod double_double;
 pub mod dual;
+pub mod hard_scenes;
 pub mod literal;
 pub mod mgh_problems;
 pub mod nist_models;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use brdfit::converge::paper_scans;
+use brdfit::analysis::paper_sets::paper_scans;
 use brdfit::engine::{FitOptions, fit};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! Prints how often the 95 % intervals hold the truth, as a Markdown table: `cargo run --release --example coverage > benches/results/coverage.md`.
 
-use brdfit::bootstrap::{Noise, copy};
+use brdfit::analysis::bootstrap::{Noise, copy};
+use brdfit::analysis::profile::calibrate::thresholds;
+use brdfit::analysis::profile::{calibrate::threshold, hold::hold};
 use brdfit::engine::{FitOptions, fit};
-use brdfit::profile::calibrate::thresholds;
-use brdfit::profile::{hold, threshold};
 use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;

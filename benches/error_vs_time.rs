@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::process::Command;
 use std::time::Instant;
 
-use brdfit::converge::{Subject, paper_scans};
+use brdfit::analysis::paper_sets::{Subject, paper_scans};
 use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::trace::{Trace, passes, trace};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};

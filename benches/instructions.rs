@@ -5,7 +5,7 @@
 use std::hint::black_box;
 use std::process::Command;
 
-use brdfit::converge::paper_scans;
+use brdfit::analysis::paper_sets::paper_scans;
 use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
 use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use brdfit::converge::{Subject, paper_scans};
+use brdfit::analysis::paper_sets::{Subject, paper_scans};
 use brdfit::engine::simd::{FastScan, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
 use brdfit_core::brdf::ALL;

@@ -1,9 +1,9 @@
 //! Prints how often `--terms auto` finds the terms that a scene was made with, as a Markdown table: `cargo run --release --example selection > benches/results/selection.md`.
 
-use brdfit::bootstrap::{Noise, copy};
-use brdfit::choose::{self, Candidate, Choice, SETS};
+use brdfit::analysis::bootstrap::{Noise, copy};
+use brdfit::analysis::choose::{self, Candidate, Choice, SETS};
 use brdfit::engine::{self, FitOptions};
-use brdfit::options::term_names;
+use brdfit::terms::term_names;
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;

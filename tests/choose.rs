@@ -4,11 +4,12 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
-use brdfit::bootstrap::{Noise, copy};
-use brdfit::choose::{self, SETS};
+use brdfit::analysis::bootstrap::{Noise, copy};
+use brdfit::analysis::choose::{self, SETS};
+use brdfit::analysis::profile::calibrate::threshold;
 use brdfit::engine::{self, FitOptions};
-use brdfit::options::term_names;
-use brdfit::profile::threshold;
+use brdfit::result::words;
+use brdfit::terms::term_names;
 use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, Params, SURFACE, has, parameters};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program;
@@ -131,7 +132,7 @@ fn command() {
     assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
     let samples = scan(&data("testdata3_sym_seed1.csv"));
     let (options, outcome, choice) = choose::fit(&samples, &auto()).unwrap();
-    assert!(ran.output.contains(&choice.unwrap().sentence()), "{}", ran.output);
+    assert!(ran.output.contains(&words::choice(&choice.unwrap())), "{}", ran.output);
     assert_eq!(ran.output.matches("p = ").count(), 4);
     let ran = program::brdfit(&["fit", file, "--terms", "auto", "--format", "json"], b"");
     let json: Value = serde_json::from_str(&ran.output).unwrap();

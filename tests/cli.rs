@@ -93,12 +93,12 @@ fn each_error_of_a_file_names_its_place() {
             "",
             "2 samples can not determine 6 parameters",
         ),
-        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":1", "not UTF-8"),
+        ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), ":3", "not text"),
         (
             "latin1",
-            b"theta_i,theta_s,brdf\n# Stra\xdfe\n".into(),
-            ":2",
-            "not UTF-8",
+            b"theta_i,theta_s,brdf\n# Stra\xdfe\n45,\x01,1\n".into(),
+            ":3",
+            "not text",
         ),
     ];
     let folder = tempfile::tempdir().unwrap();

@@ -4,10 +4,10 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
-use brdfit::bootstrap::{Noise, bootstrap, copy, quantile};
+use brdfit::analysis::bootstrap::{Noise, bootstrap, copy, quantile};
+use brdfit::analysis::profile::calibrate::thresholds;
+use brdfit::analysis::profile::{Profile, calibrate::threshold, hold::hold, profile};
 use brdfit::engine::{self, FitOptions, Outcome};
-use brdfit::profile::calibrate::thresholds;
-use brdfit::profile::{Profile, hold, profile, threshold};
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program;

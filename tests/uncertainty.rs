@@ -6,10 +6,11 @@
 
 use std::f64::consts::PI;
 
-use brdfit::derived;
+use brdfit::analysis::derived;
+use brdfit::analysis::reflectance::reflectance;
+use brdfit::analysis::undetermined::undetermined;
 use brdfit::engine::{self, FitOptions};
-use brdfit::reflectance::reflectance;
-use brdfit::uncertainty::words::undetermined;
+use brdfit::result::words::sentence;
 use brdfit_core::brdf::{DIFFUSE, Params, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization};
@@ -295,7 +296,7 @@ fn says_what_is_only_known_through_a_product() {
     let open = undetermined(&outcome.params, &outcome.uncertainty, &derived);
     assert_eq!(open.len(), 1);
     assert_eq!(open[0].parameters, ["rho_s", "rho_v", "n", "kappa"]);
-    assert!(open[0].sentence().starts_with(
+    assert!(sentence(&open[0]).starts_with(
         "rho_s, rho_v, n and kappa only through rho_s F(theta_d) and rho_v F(theta_de); these products are known to "
     ));
     // The actual products, and rho_d and m, are within three standard errors.

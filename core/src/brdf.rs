@@ -1,8 +1,12 @@
-//! The modified Cook-Torrance BRDF of Eq. 14, as ln f with its gradient.
+//! Microfacet models as ln f with its gradient: the modified Cook-Torrance BRDF of Eq. 14, and what else Eq. 5 gives from other pieces.
+
+use core::marker::PhantomData;
 
 use crate::fresnel::{Fresnel, Index};
-use crate::geometry::{Block, Geometry, SURFACE_LOBE, VOLUME_LOBE};
-use crate::pack::{ALONE, Pack};
+use crate::geometry::{Block, Geometry};
+use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
+use crate::model::{Rows, WEIGHTS};
+use crate::pack::Pack;
 use crate::real::Real;
 
 /// Lambertian term `rho_d / pi`.
@@ -15,32 +19,63 @@ pub const VOLUME: u8 = 4;
 pub const ABSORBING: u8 = 8;
 /// Eq. 14 whole.
 pub const ALL: u8 = DIFFUSE | SURFACE | VOLUME | ABSORBING;
+/// The volume lobe has a slope `m_v` of its own.
+pub const OWN_SLOPE: u8 = 16;
+/// There is a second surface lobe, of weight `rho_2` and slope `m_2`, with the index of the first.
+pub const SECOND: u8 = 32;
+/// The distribution has the exponent `q` of its tail ([`crate::lobes::HyperCauchy`]).
+pub const TAIL: u8 = 64;
 
-/// The parameters' names, in the order used everywhere.
+/// The names of Eq. 14's parameters, in the order used everywhere.
 pub const NAMES: [&str; 6] = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"];
 
-/// Is parameter `index` of [`NAMES`] part of `terms`?
+/// Parameters that a microfacet model can have: the six of [`NAMES`], then `m_v`, `rho_2`, `m_2` and `q`.
+pub(crate) const EVERY: usize = 10;
+/// Places of `m_v`, `rho_2`, `m_2` and `q` among them.
+const M_V: usize = 6;
+const RHO_2: usize = 7;
+const M_2: usize = 8;
+const Q: usize = 9;
+
+/// Is parameter `index`, in the order of [`NAMES`], part of `terms`?
+#[inline(always)]
 pub const fn has(terms: u8, index: usize) -> bool {
     present(terms) >> index & 1 != 0
 }
 
-/// Bit i tells whether parameter i of [`NAMES`] is part of `terms`.
+/// Bit i tells whether parameter i is part of `terms`.
+#[inline(always)]
 const fn present(terms: u8) -> u32 {
     let weights = (terms & (DIFFUSE | SURFACE | VOLUME)) as u32;
     let lobes = terms & (SURFACE | VOLUME) != 0;
     let m_and_n = if lobes { 0b011_000 } else { 0 };
     let kappa = if lobes && terms & ABSORBING != 0 { 0b100_000 } else { 0 };
-    weights | m_and_n | kappa
+    let own = if terms & OWN_SLOPE != 0 { 1 << M_V } else { 0 };
+    let second = if terms & SECOND != 0 { 1 << RHO_2 | 1 << M_2 } else { 0 };
+    let tail = if terms & TAIL != 0 { 1 << Q } else { 0 };
+    weights | m_and_n | kappa | own | second | tail
 }
 
 /// Number of parameters of `terms`.
+#[inline(always)]
 pub const fn parameters(terms: u8) -> usize {
-    slot(terms, 6)
+    slot(terms, EVERY)
 }
 
 /// Place of parameter `index` among those of `terms`.
+#[inline(always)]
 pub const fn slot(terms: u8, index: usize) -> usize {
     (present(terms) & ((1 << index) - 1)).count_ones() as usize
+}
+
+/// Parameter `index` of the coordinates of `terms`, or `absent`.
+#[inline(always)]
+pub(crate) fn get<R: Real, const P: usize>(terms: u8, x: &[R; P], index: usize, absent: R) -> R {
+    if has(terms, index) {
+        x.get(slot(terms, index)).copied().unwrap_or(absent)
+    } else {
+        absent
+    }
 }
 
 /// The six parameters of Eq. 14, all dimensionless; those of absent terms are 0, and n is 1.
@@ -79,231 +114,94 @@ impl<R: Real> Params<R> {
     }
 }
 
-/// The model with its parameters, and what follows from them alone; `TERMS` is what the scene needs, and what is left out costs nothing.
+/// The lobes that a model can have: surface, volume, second surface lobe.
+const LOBES: usize = 3;
+/// Which pair of facet angles each has: that of the surface lobe, or that of the volume lobe.
+pub(crate) const PAIR: [usize; LOBES] = [0, 1, 0];
+/// Places of the weight of each, and of its slope where it has one of its own.
+pub(crate) const WEIGHT: [usize; LOBES] = [1, 2, RHO_2];
+const SLOPE: [usize; LOBES] = [3, M_V, M_2];
+
+/// Number of lobes of `terms`.
+#[inline(always)]
+pub(crate) const fn lobes(terms: u8) -> usize {
+    (terms & (SURFACE | VOLUME | SECOND)).count_ones() as usize
+}
+
+/// Which lobe is in place `place` of those of `terms`.
+#[inline(always)]
+const fn lobe(terms: u8, place: usize) -> usize {
+    match (terms & SURFACE != 0, terms & VOLUME != 0, place) {
+        (true, _, 0) => 0,
+        (true, true, 1) | (false, ..) => 1,
+        _ => 2,
+    }
+}
+
+/// Place of the slope of a lobe of `terms`: its own, or that of the first.
+#[inline(always)]
+const fn slope(terms: u8, lobe: usize) -> usize {
+    if has(terms, SLOPE[lobe]) { SLOPE[lobe] } else { SLOPE[0] }
+}
+
+/// A microfacet model with its parameters, and what follows from them alone: without `D` and `M` that of Eq. 14.
+///
+/// `TERMS` is what the scene needs, and what is left out costs nothing.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Brdf<R, const TERMS: u8> {
+pub struct Brdf<R, const TERMS: u8, D = Beckmann, M = VGroove> {
     rho_d_pi: R,
-    /// Of the surface and the volume lobe.
-    rho: [R; 2],
-    inverse_m: R,
-    inverse_m2: R,
+    rho: [R; LOBES],
+    inverse_m: [R; LOBES],
+    inverse_m2: [R; LOBES],
+    q: R,
     index: Index<R>,
     /// No diffuse term keeps the lobes from underflow.
     faint: bool,
     /// Lobes that are not 0 everywhere.
-    shining: [bool; 2],
+    shining: [bool; LOBES],
     ln_rho_d: R,
     lift_limit: R,
-}
-
-/// ln f of `G` lanes of a block, with its derivatives.
-pub(crate) struct Rows<R, const G: usize> {
-    pub ln_f: Pack<R, G>,
-    /// In the order of [`NAMES`], the last by kappa^2; multiplied by the block's weights.
-    pub gradient: [Pack<R, G>; 6],
+    pieces: PhantomData<(D, M)>,
 }
 
 /// What keeps the lobes of a block from underflow.
-pub(crate) struct Lift<R, const L: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct Lift<R, const L: usize> {
     /// Taken out of the exponents.
     shift: [R; L],
     /// exp(-shift), within limits.
     lift: [R; L],
 }
 
-/// Number of lobes of `terms`.
-pub(crate) const fn lobes(terms: u8) -> usize {
-    (terms & (SURFACE | VOLUME)).count_ones() as usize
-}
-
 impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
-    const DIFFUSE: bool = TERMS & DIFFUSE != 0;
-    const FIRST_LOBE: usize = if TERMS & SURFACE != 0 {
-        SURFACE_LOBE
-    } else {
-        VOLUME_LOBE
-    };
-    const LAST_LOBE: usize = if TERMS & VOLUME != 0 { VOLUME_LOBE } else { SURFACE_LOBE };
-
-    /// The model at `params`, of which those of absent terms are ignored.
+    /// The model of Eq. 14 at `params`, of which those of absent terms are ignored.
     pub fn new(params: &Params<R>) -> Self {
-        let kappa2 = params.kappa * params.kappa;
-        Self::with_kappa2(&Params {
-            kappa: kappa2,
-            ..*params
-        })
+        let Params {
+            rho_d,
+            rho_s,
+            rho_v,
+            m,
+            n,
+            kappa,
+        } = *params;
+        Self::build(
+            rho_d,
+            [rho_s, rho_v, R::ZERO],
+            [m; LOBES],
+            R::ONE,
+            Index::new(n, kappa * kappa),
+        )
     }
 
-    /// As `new`, but the last parameter is kappa^2.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(crate) fn with_kappa2(params: &Params<R>) -> Self {
-        let when = |present: bool, x: R| if present { x } else { R::ZERO };
-        let rho_d = when(Self::DIFFUSE, params.rho_d);
-        let rho = [
-            when(TERMS & SURFACE != 0, params.rho_s),
-            when(TERMS & VOLUME != 0, params.rho_v),
-        ];
-        let kappa2 = when(has(TERMS, 5), params.kappa);
-        let index = Index::new(params.n, kappa2);
-        let shines = |rho: R| rho > R::TINY && !index.is_vacuum();
-        let inverse_m = R::ONE / params.m;
-        let shining = [shines(rho[0]), shines(rho[1])];
-        let ln_rho_d = if rho_d > R::TINY { rho_d.ln() } else { -R::MAX };
-        Brdf {
-            rho_d_pi: rho_d / R::PI,
-            rho,
-            inverse_m,
-            inverse_m2: inverse_m * inverse_m,
-            index,
-            faint: !(rho_d > R::FAINT) && (shining[0] || shining[1]),
-            shining,
-            ln_rho_d,
-            lift_limit: if rho_d > R::TINY { -ln_rho_d } else { R::LIFT },
-        }
-    }
-
-    /// Where no diffuse term keeps the lobes from underflow, the largest exponent of each lane.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(crate) fn lift<const L: usize>(&self, block: &Block<R, L>) -> Lift<R, L> {
-        let mut shift = [R::ZERO; L];
-        let mut lift = [R::ONE; L];
-        if self.faint {
-            for lane in 0..L {
-                let mut brightest = self.ln_rho_d;
-                for lobe in Self::FIRST_LOBE..Self::LAST_LOBE + 1 {
-                    let exponent = -block.tan2_theta_h[lobe][lane] * self.inverse_m2;
-                    brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
-                }
-                shift[lane] = brightest;
-                lift[lane] = (-brightest).min(self.lift_limit).exp();
-            }
-        }
-        Lift { shift, lift }
-    }
-
-    /// One number of each lobe and lane: lobe by lobe, the `G` lanes of [`Pack::gather`].
-    #[inline(always)]
-    fn facets<const K: usize, const G: usize, const L: usize>(rows: &[[R; L]; 2], lane: usize) -> Pack<R, K> {
-        Pack::from_fn(|k| rows[Self::FIRST_LOBE + k / G][lane + k % G * (L / G)])
-    }
-
-    /// factor E / m^2 and F of each lobe and lane, with E = exp(-tan^2 theta_h / m^2 - shift).
-    #[inline(always)]
-    fn beams<const K: usize, const G: usize, const L: usize, const GRADIENT: bool>(
-        &self,
-        block: &Block<R, L>,
-        shift: Pack<R, G>,
-        lane: usize,
-    ) -> (Pack<R, K>, Fresnel<R, K>) {
-        let shift = Pack::<R, K>::from_fn(|k| shift.0[k % G]);
-        let exponent = Self::facets::<K, G, L>(&block.tan2_theta_h, lane) * -self.inverse_m2 - shift;
-        let exponent = exponent.map(|x| x.min(R::LIFT));
-        let beckmann = exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e });
-        let beam = Self::facets::<K, G, L>(&block.factor, lane) * self.inverse_m2 * beckmann;
-        let cos_theta_d = Self::facets::<K, G, L>(&block.cos_theta_d, lane);
-        (beam, self.index.reflect::<K, GRADIENT>(cos_theta_d))
-    }
-
-    /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives; `K` is `G` times the number of lobes.
-    ///
-    /// With E = exp(-tan^2 theta_h / m^2), f = rho_d/pi + sum over lobes of rho F factor E / m^2.
-    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
-    #[inline(always)]
-    pub(crate) fn rows<const K: usize, const G: usize, const L: usize, const GRADIENT: bool>(
-        &self,
-        block: &Block<R, L>,
-        lift: &Lift<R, L>,
-        lane: usize,
-    ) -> Rows<R, G> {
-        let shift = Pack::<R, G>::gather(&lift.shift, lane);
-        let lift = Pack::<R, G>::gather(&lift.lift, lane);
-        let rho = Pack::<R, K>::from_fn(|k| self.rho[Self::FIRST_LOBE + k / G]);
-        let (beam, fresnel) = self.beams::<K, G, L, GRADIENT>(block, shift, lane);
-        let d_rho = beam * fresnel.f;
-        let term = rho * d_rho;
-        let f = sum_lobes(lift * self.rho_d_pi, term).map(|f| f.max(R::TINY));
-        let zero = Pack::splat(R::ZERO);
+    fn single<const GRADIENT: bool>(&self, geometry: &Geometry<R>) -> Rows<R, 1, 6> {
+        let block = Block::of((*geometry).into());
         let mut rows = Rows {
-            ln_f: shift + f.ln(),
-            gradient: [zero; 6],
+            ln_f: Pack::splat(R::ZERO),
+            gradient: [Pack::splat(R::ZERO); 6],
         };
-        if GRADIENT {
-            let two = R::of(2.0);
-            let share = Pack::gather(&block.weight, lane) / f;
-            let weighted = rho * beam;
-            let slope = Self::facets::<K, G, L>(&block.tan2_theta_h, lane) * self.inverse_m2 - R::ONE;
-            rows.gradient[0] = lift * share * (R::ONE / R::PI);
-            for k in 0..K {
-                rows.gradient[1 + Self::FIRST_LOBE + k / G].0[k % G] = d_rho.0[k] * share.0[k % G];
-            }
-            rows.gradient[3] = sum_lobes(zero, term * slope) * share * (two * self.inverse_m);
-            rows.gradient[4] = sum_lobes(zero, weighted * fresnel.d_n2) * share * (two * self.index.n);
-            rows.gradient[5] = sum_lobes(zero, weighted * fresnel.d_kappa2) * share;
-        }
+        self.write_row::<GRADIENT, 6, 6>(&block, &mut rows, |index| index);
         rows
-    }
-
-    /// f / f_measured for unit rho_d, rho_s and rho_v, times the block's weights; lanes and `K` as in `rows`.
-    #[inline(always)]
-    pub(crate) fn relative_columns<const K: usize, const G: usize, const L: usize>(
-        &self,
-        block: &Block<R, L>,
-        lane: usize,
-    ) -> [Pack<R, G>; 3] {
-        if ALONE {
-            let mut columns = [Pack::splat(R::ZERO); 3];
-            for k in 0..G {
-                let one = self.column(&block.lane(lane + k * (L / G)));
-                for i in 0..3 {
-                    columns[i].0[k] = one[i].0[0];
-                }
-            }
-            return columns;
-        }
-        self.columns_pack::<K, G, L>(block, lane)
-    }
-
-    /// `relative_columns` of a block of one lane.
-    fn column(&self, block: &Block<R, 1>) -> [Pack<R, 1>; 3] {
-        match lobes(TERMS) {
-            0 => self.columns_pack::<0, 1, 1>(block, 0),
-            1 => self.columns_pack::<1, 1, 1>(block, 0),
-            _ => self.columns_pack::<2, 1, 1>(block, 0),
-        }
-    }
-
-    #[inline(always)]
-    fn columns_pack<const K: usize, const G: usize, const L: usize>(
-        &self,
-        block: &Block<R, L>,
-        lane: usize,
-    ) -> [Pack<R, G>; 3] {
-        let (beam, fresnel) = self.beams::<K, G, L, false>(block, Pack::splat(R::ZERO), lane);
-        let lobes = beam * fresnel.f;
-        let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
-        let mut columns = [unit * (R::ONE / R::PI); 3];
-        for k in 0..K {
-            columns[1 + Self::FIRST_LOBE + k / G].0[k % G] = lobes.0[k] * unit.0[k % G];
-        }
-        columns
-    }
-
-    /// `rows` of a block of one lane.
-    pub(crate) fn row<const GRADIENT: bool>(&self, block: &Block<R, 1>) -> Rows<R, 1> {
-        let lift = self.lift(block);
-        match lobes(TERMS) {
-            0 => self.rows::<0, 1, 1, GRADIENT>(block, &lift, 0),
-            1 => self.rows::<1, 1, 1, GRADIENT>(block, &lift, 0),
-            _ => self.rows::<2, 1, 1, GRADIENT>(block, &lift, 0),
-        }
-    }
-
-    fn single<const GRADIENT: bool>(&self, geometry: &Geometry<R>) -> Rows<R, 1> {
-        let mut block = Block::empty();
-        block.set_geometry(0, geometry);
-        block.weight = [R::ONE];
-        self.row::<GRADIENT>(&block)
     }
 
     /// ln f, f in sr^-1; where f vanishes (all weights 0), ln of the smallest sum that counts.
@@ -314,15 +212,295 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
     /// ln f, and its derivatives by rho_d, rho_s, rho_v, m, n and kappa (0 for absent terms).
     pub fn gradient(&self, geometry: &Geometry<R>) -> (R, [R; 6]) {
         let rows = self.single::<true>(geometry);
-        let mut gradient = [R::ZERO; 6];
-        for (index, value) in gradient.iter_mut().enumerate() {
-            if has(TERMS, index) {
-                *value = rows.gradient[index].0[0];
-            }
-        }
+        let mut gradient = rows.gradient.map(|column| column.0[0]);
         gradient[5] *= R::of(2.0) * self.index.kappa;
         (rows.ln_f.0[0], gradient)
     }
+}
+
+impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
+    /// The model at the solver's coordinates, the last of Eq. 14's being kappa^2.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(crate) fn at<const P: usize>(x: &[R; P]) -> Self {
+        let value = |index: usize, absent: R| get(TERMS, x, index, absent);
+        let m = |lobe: usize| value(slope(TERMS, lobe), R::ONE);
+        Self::build(
+            value(0, R::ZERO),
+            [value(1, R::ZERO), value(2, R::ZERO), value(RHO_2, R::ZERO)],
+            [m(0), m(1), m(2)],
+            value(Q, R::ONE),
+            Index::new(value(4, R::ONE), value(5, R::ZERO)),
+        )
+    }
+
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn build(rho_d: R, rho: [R; LOBES], m: [R; LOBES], q: R, index: Index<R>) -> Self {
+        let when = |present: bool, x: R| if present { x } else { R::ZERO };
+        let rho_d = when(TERMS & DIFFUSE != 0, rho_d);
+        let rho = [
+            when(TERMS & SURFACE != 0, rho[0]),
+            when(TERMS & VOLUME != 0, rho[1]),
+            when(TERMS & SECOND != 0, rho[2]),
+        ];
+        let index = if has(TERMS, 5) {
+            index
+        } else {
+            Index::new(index.n, R::ZERO)
+        };
+        let shines = |rho: R| rho > R::TINY && !index.is_vacuum();
+        let shining = [shines(rho[0]), shines(rho[1]), shines(rho[2])];
+        // Lobes that share a slope share one division.
+        let first = R::ONE / m[0];
+        let inverse_m = [
+            first,
+            if has(TERMS, M_V) { R::ONE / m[1] } else { first },
+            if has(TERMS, M_2) { R::ONE / m[2] } else { first },
+        ];
+        let ln_rho_d = if rho_d > R::TINY { rho_d.ln() } else { -R::MAX };
+        Brdf {
+            rho_d_pi: rho_d / R::PI,
+            rho,
+            inverse_m,
+            inverse_m2: [
+                inverse_m[0] * inverse_m[0],
+                inverse_m[1] * inverse_m[1],
+                inverse_m[2] * inverse_m[2],
+            ],
+            q,
+            index,
+            faint: D::UNDERFLOWS && !(rho_d > R::FAINT) && (shining[0] || shining[1] || shining[2]),
+            shining,
+            ln_rho_d,
+            lift_limit: if rho_d > R::TINY { -ln_rho_d } else { R::LIFT },
+            pieces: PhantomData,
+        }
+    }
+
+    /// Where no diffuse term keeps the lobes from underflow, the largest exponent of each lane.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(crate) fn lift<const L: usize, const C: usize>(&self, block: &Block<R, L, C>) -> Lift<R, L> {
+        let mut shift = [R::ZERO; L];
+        let mut lift = [R::ONE; L];
+        if D::UNDERFLOWS && self.faint {
+            for lane in 0..L {
+                let mut brightest = self.ln_rho_d;
+                for place in 0..lobes(TERMS) {
+                    let lobe = lobe(TERMS, place);
+                    let exponent = -block.columns[PAIR[lobe]][lane] * self.inverse_m2[lobe];
+                    brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
+                }
+                shift[lane] = brightest;
+                lift[lane] = (-brightest).min(self.lift_limit).exp();
+            }
+        }
+        Lift { shift, lift }
+    }
+
+    /// A column of the pair of facet angles of each lobe: lobe by lobe, the `G` lanes of [`Pack::gather`].
+    #[inline(always)]
+    fn facets<const K: usize, const G: usize, const L: usize, const C: usize>(
+        block: &Block<R, L, C>,
+        first: usize,
+        lane: usize,
+    ) -> Pack<R, K> {
+        Pack::from_fn(|k| block.columns[first + PAIR[lobe(TERMS, k / G)]][lane + k % G * (L / G)])
+    }
+
+    /// A number of each lobe, for each of its lanes.
+    #[inline(always)]
+    fn of_lobes<const K: usize, const G: usize>(numbers: &[R; LOBES]) -> Pack<R, K> {
+        Pack::from_fn(|k| numbers[lobe(TERMS, k / G)])
+    }
+
+    /// f of each lobe and lane at rho F = 1, times exp(-shift).
+    #[inline(always)]
+    fn beams<const K: usize, const G: usize, const L: usize, const C: usize>(
+        &self,
+        block: &Block<R, L, C>,
+        shift: Pack<R, G>,
+        lane: usize,
+    ) -> Beams<R, K>
+    where
+        M: Masking<D, C>,
+    {
+        let shift = Pack::<R, K>::from_fn(|k| shift.0[k % G]);
+        let inverse_m2 = Self::of_lobes::<K, G>(&self.inverse_m2);
+        let t = Self::facets::<K, G, L, C>(block, 0, lane) * inverse_m2;
+        let f = Self::facets::<K, G, L, C>(block, 4, lane) * inverse_m2 * D::shape(t, shift, self.q);
+        let mut beams = Beams {
+            f,
+            t,
+            masking_slope: Pack::splat(R::ZERO),
+        };
+        if M::SLOPED {
+            // The volume lobe has no masking: there, facets of slope 0.
+            let m2 = Pack::<R, K>::from_fn(|k| {
+                let lobe = lobe(TERMS, k / G);
+                if PAIR[lobe] == 0 {
+                    R::ONE / self.inverse_m2[lobe]
+                } else {
+                    R::ZERO
+                }
+            });
+            let tan2_theta =
+                |column: usize| Pack::<R, K>::from_fn(|k| block.columns[column % C][lane + k % G * (L / G)]);
+            let (masking, slope) = M::masking([tan2_theta(6), tan2_theta(7)], m2);
+            beams.f = beams.f * masking;
+            beams.masking_slope = slope;
+        }
+        beams
+    }
+
+    /// F of each lobe and lane; `KP` is `G` times the number of pairs of facet angles.
+    #[inline(always)]
+    fn reflect<
+        const K: usize,
+        const KP: usize,
+        const G: usize,
+        const L: usize,
+        const C: usize,
+        const GRADIENT: bool,
+    >(
+        &self,
+        block: &Block<R, L, C>,
+        lane: usize,
+    ) -> Fresnel<R, K> {
+        let cos_theta_d = Self::facets::<KP, G, L, C>(block, 2, lane);
+        let fresnel = self.index.reflect::<KP, GRADIENT>(cos_theta_d);
+        // The second surface lobe has the angles of the first.
+        let spread = |pack: Pack<R, KP>| Pack::<R, K>::from_fn(|k| pack.0[if k < KP { k } else { k % G }]);
+        Fresnel {
+            f: spread(fresnel.f),
+            d_n2: spread(fresnel.d_n2),
+            d_kappa2: spread(fresnel.d_kappa2),
+        }
+    }
+
+    /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives, each in the place that `place` gives it; `K` is `G` times the number of lobes.
+    ///
+    /// With t = tan^2 theta_h / m^2, f = rho_d/pi + sum over lobes of rho F factor g(t) / m^2.
+    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
+    #[inline(always)]
+    pub(crate) fn write<
+        const K: usize,
+        const KP: usize,
+        const G: usize,
+        const L: usize,
+        const C: usize,
+        const GRADIENT: bool,
+        const P: usize,
+    >(
+        &self,
+        block: &Block<R, L, C>,
+        lift: &Lift<R, L>,
+        lane: usize,
+        rows: &mut Rows<R, G, P>,
+        place: impl Fn(usize) -> usize,
+    ) where
+        M: Masking<D, C>,
+    {
+        let shift = Pack::<R, G>::gather(&lift.shift, lane);
+        let lift = Pack::<R, G>::gather(&lift.lift, lane);
+        let rho = Self::of_lobes::<K, G>(&self.rho);
+        let beams = self.beams::<K, G, L, C>(block, shift, lane);
+        let fresnel = self.reflect::<K, KP, G, L, C, GRADIENT>(block, lane);
+        let d_rho = beams.f * fresnel.f;
+        let term = rho * d_rho;
+        let f = sum_lobes(lift * self.rho_d_pi, term).map(|f| f.max(R::TINY));
+        rows.ln_f = shift + f.ln();
+        if !GRADIENT {
+            return;
+        }
+        let two = R::of(2.0);
+        let share = Pack::gather(&block.weight, lane) / f;
+        let weighted = rho * beams.f;
+        let mut set = |index: usize, value: Pack<R, G>| {
+            if has(TERMS, index)
+                && let Some(row) = rows.gradient.get_mut(place(index))
+            {
+                *row = value;
+            }
+        };
+        set(0, lift * share * (R::ONE / R::PI));
+        for place in 0..K / G {
+            let of_lobe = Pack::<R, G>::from_fn(|k| d_rho.0[place * G + k]);
+            set(WEIGHT[lobe(TERMS, place)], of_lobe * share);
+        }
+        // m d ln(f of a lobe) / dm, over 2.
+        let mut steepness = D::fall(beams.t, self.q) - Pack::splat(R::ONE);
+        if M::SLOPED {
+            steepness = steepness + beams.masking_slope * R::of(0.5);
+        }
+        let by_slope = term * steepness;
+        for owner in 0..LOBES {
+            let index = SLOPE[owner];
+            let sum = sum_some(by_slope, |place| slope(TERMS, lobe(TERMS, place)) == index);
+            set(index, sum * share * (two * self.inverse_m[owner]));
+        }
+        set(
+            4,
+            sum_lobes(Pack::splat(R::ZERO), weighted * fresnel.d_n2) * share * (two * self.index.n),
+        );
+        set(5, sum_lobes(Pack::splat(R::ZERO), weighted * fresnel.d_kappa2) * share);
+        if D::TAIL {
+            set(
+                Q,
+                sum_lobes(Pack::splat(R::ZERO), term * D::tail(beams.t, self.q)) * share,
+            );
+        }
+    }
+
+    /// [`Brdf::write`] of a block of one lane.
+    #[inline(always)]
+    pub(crate) fn write_row<const GRADIENT: bool, const P: usize, const C: usize>(
+        &self,
+        block: &Block<R, 1, C>,
+        rows: &mut Rows<R, 1, P>,
+        place: impl Fn(usize) -> usize,
+    ) where
+        M: Masking<D, C>,
+    {
+        let lift = self.lift(block);
+        match (lobes(TERMS), TERMS & SECOND != 0) {
+            (0, _) => self.write::<0, 0, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
+            (1, _) => self.write::<1, 1, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
+            (2, false) => self.write::<2, 2, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
+            (2, true) => self.write::<2, 1, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
+            _ => self.write::<3, 2, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
+        }
+    }
+
+    /// f of each weight at 1 and the others at 0; lanes, `K` and `KP` as in `write`.
+    #[inline(always)]
+    pub(crate) fn columns<const K: usize, const KP: usize, const G: usize, const L: usize, const C: usize>(
+        &self,
+        block: &Block<R, L, C>,
+        lane: usize,
+    ) -> [Pack<R, G>; WEIGHTS]
+    where
+        M: Masking<D, C>,
+    {
+        let beams = self.beams::<K, G, L, C>(block, Pack::splat(R::ZERO), lane);
+        let lobes = beams.f * self.reflect::<K, KP, G, L, C, false>(block, lane).f;
+        let mut columns = [Pack::splat(R::ONE / R::PI); WEIGHTS];
+        let diffuse = (TERMS & DIFFUSE != 0) as usize;
+        for place in 0..K / G {
+            if let Some(column) = columns.get_mut(diffuse + place) {
+                *column = Pack::from_fn(|k| lobes.0[place * G + k]);
+            }
+        }
+        columns
+    }
+}
+
+/// What the lobes are made of, in each lane.
+struct Beams<R, const K: usize> {
+    /// f of each lobe at rho F = 1, sr^-1, times exp(-shift).
+    f: Pack<R, K>,
+    /// tan^2 theta_h / m^2.
+    t: Pack<R, K>,
+    /// m d ln G / dm, where G depends on the slope.
+    masking_slope: Pack<R, K>,
 }
 
 /// Adds what belongs to each lane, lobe by lobe.
@@ -330,6 +508,18 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
 fn sum_lobes<R: Real, const K: usize, const G: usize>(mut sum: Pack<R, G>, x: Pack<R, K>) -> Pack<R, G> {
     for k in 0..K {
         sum.0[k % G] += x.0[k];
+    }
+    sum
+}
+
+/// The same over some of the lobes, from 0.
+#[inline(always)]
+fn sum_some<R: Real, const K: usize, const G: usize>(x: Pack<R, K>, counts: impl Fn(usize) -> bool) -> Pack<R, G> {
+    let mut sum = Pack::splat(R::ZERO);
+    for k in 0..K {
+        if counts(k / G) {
+            sum.0[k % G] += x.0[k];
+        }
     }
     sum
 }

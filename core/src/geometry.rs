@@ -158,12 +158,26 @@ impl<R: Real> Geometry<R> {
     }
 }
 
+/// First tan^2 theta_h, then cos theta_d, then the factor, each of the surface and of the volume lobe.
+impl<R: Real> From<Geometry<R>> for [R; 6] {
+    fn from(Geometry { lobes: [a, b] }: Geometry<R>) -> Self {
+        [
+            a.tan2_theta_h,
+            b.tan2_theta_h,
+            a.cos_theta_d,
+            b.cos_theta_d,
+            a.factor,
+            b.factor,
+        ]
+    }
+}
+
 /// Geometry and measured ln f of one sample; one that [`Observation::new`] made is valid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Observation<R> {
-    /// Where the sample was measured.
-    pub geometry: Geometry<R>,
+pub struct Observation<R, G = Geometry<R>> {
+    /// Where the sample was measured: [`Geometry`] for Eq. 14, or the numbers that another model needs.
+    pub geometry: G,
     /// ln of the measured BRDF in sr^-1.
     pub ln_f: R,
     /// Factor of the residual of ln f, dimensionless, not negative.
@@ -179,12 +193,14 @@ impl<R: Real> Observation<R> {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)?;
         Self::at(geometry, sample.brdf, sample.weight)
     }
+}
 
+impl<R: Real, G> Observation<R, G> {
     /// The observation of `brdf`, in sr^-1, where the geometry is known; the sign of its weight does not count.
     ///
     /// # Errors
     /// [`SampleError::NotFinite`] and [`SampleError::NotPositive`].
-    pub fn at(geometry: Geometry<R>, brdf: R, weight: R) -> Result<Self, SampleError> {
+    pub fn at(geometry: G, brdf: R, weight: R) -> Result<Self, SampleError> {
         if !(brdf.is_finite() && weight.is_finite()) {
             return Err(SampleError::NotFinite);
         }
@@ -199,34 +215,33 @@ impl<R: Real> Observation<R> {
     }
 }
 
-/// `L` observations, lane by lane; empty lanes have weight 0 and add exactly 0.
+/// `L` observations, lane by lane, each with the `C` numbers that a model needs of its directions; empty lanes have weight 0 and add exactly 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(align(64))]
-pub struct Block<R, const L: usize = LANES> {
-    pub(crate) tan2_theta_h: [[R; L]; 2],
-    pub(crate) cos_theta_d: [[R; L]; 2],
-    pub(crate) factor: [[R; L]; 2],
+pub struct Block<R, const L: usize = LANES, const C: usize = 6> {
+    /// Column by column, lane by lane.
+    pub columns: [[R; L]; C],
     pub(crate) ln_f: [R; L],
     pub(crate) weight: [R; L],
 }
 
-impl<R: Real, const L: usize> Block<R, L> {
-    /// A block without observations: each lane at normal incidence, where it computes ordinary numbers.
-    pub fn empty() -> Self {
-        let (zero, one) = ([R::ZERO; L], [R::ONE; L]);
-        Block {
-            tan2_theta_h: [zero; 2],
-            cos_theta_d: [one; 2],
-            factor: [one; 2],
-            ln_f: zero,
-            weight: zero,
-        }
+impl<R: Real, const L: usize, const C: usize> Block<R, L, C> {
+    /// A block without observations: each lane in directions where every model computes ordinary numbers.
+    pub const EMPTY: Self = Block {
+        columns: [[R::ONE; L]; C],
+        ln_f: [R::ZERO; L],
+        weight: [R::ZERO; L],
+    };
+
+    /// A block without observations.
+    pub const fn empty() -> Self {
+        Self::EMPTY
     }
 
     /// The first `L` of `observations`, in order.
-    pub fn new(observations: &[Observation<R>]) -> Self {
-        let mut block = Block::empty();
+    pub fn new<G: Copy + Into<[R; C]>>(observations: &[Observation<R, G>]) -> Self {
+        let mut block = Block::EMPTY;
         for (lane, observation) in observations.iter().enumerate() {
             block.set(lane, observation);
         }
@@ -234,33 +249,38 @@ impl<R: Real, const L: usize> Block<R, L> {
     }
 
     /// Puts an observation into a lane; a lane from `L` on is ignored.
-    pub fn set(&mut self, lane: usize, observation: &Observation<R>) {
+    pub fn set<G: Copy + Into<[R; C]>>(&mut self, lane: usize, observation: &Observation<R, G>) {
         if lane < L {
-            self.set_geometry(lane, &observation.geometry);
+            let numbers: [R; C] = observation.geometry.into();
+            for (column, number) in self.columns.iter_mut().zip(numbers) {
+                column[lane] = number;
+            }
             self.ln_f[lane] = observation.ln_f;
             self.weight[lane] = observation.weight;
         }
     }
 
     /// One lane as a block of its own.
-    pub(crate) fn lane(&self, lane: usize) -> Block<R, 1> {
+    pub(crate) fn lane(&self, lane: usize) -> Block<R, 1, C> {
         // So the compiler sees that no index is out of range.
         let lane = lane % L;
-        let both = |rows: &[[R; L]; 2]| [[rows[0][lane]], [rows[1][lane]]];
-        Block {
-            tan2_theta_h: both(&self.tan2_theta_h),
-            cos_theta_d: both(&self.cos_theta_d),
-            factor: both(&self.factor),
-            ln_f: [self.ln_f[lane]],
-            weight: [self.weight[lane]],
+        let mut one = Block::EMPTY;
+        for (column, from) in one.columns.iter_mut().zip(&self.columns) {
+            column[0] = from[lane];
         }
+        one.ln_f = [self.ln_f[lane]];
+        one.weight = [self.weight[lane]];
+        one
     }
+}
 
-    pub(crate) fn set_geometry(&mut self, lane: usize, geometry: &Geometry<R>) {
-        for (lobe, from) in geometry.lobes.iter().enumerate() {
-            self.tan2_theta_h[lobe][lane] = from.tan2_theta_h;
-            self.cos_theta_d[lobe][lane] = from.cos_theta_d;
-            self.factor[lobe][lane] = from.factor;
+impl<R: Real, const C: usize> Block<R, 1, C> {
+    /// One pair of directions, of weight 1.
+    pub(crate) fn of(numbers: [R; C]) -> Self {
+        Block {
+            columns: numbers.map(|number| [number]),
+            ln_f: [R::ZERO],
+            weight: [R::ONE],
         }
     }
 }

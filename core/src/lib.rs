@@ -11,11 +11,13 @@
 //! | numbers side by side | [`pack::Pack`] | `pack.rs` | |
 //! | sample -> geometry, observation -> block | [`geometry::Sample`], [`geometry::Observation`], [`geometry::Block`] | `geometry.rs` | Eq. 7, 9, 12, 13 |
 //! | F and its derivatives | `Index` | `fresnel.rs` | |
+//! | what a model is | [`model::Model`], [`model::Parameter`] | `model.rs` | |
+//! | pieces of microfacet models | [`lobes::Distribution`], [`lobes::Masking`] | `lobes.rs` | Eq. 5, 8, 9 |
 //! | ln f and its gradient | [`brdf::Params`], [`brdf::Brdf`] | `brdf.rs` | Eq. 3-8, 11, 14 |
+//! | microfacet models | [`microfacet::Microfacet`] | `microfacet.rs`, `bend.rs` | Eq. 5, 14 |
 //! | step within bounds | | `boxqp.rs` | |
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
-//! | residuals of a scan | [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
-//! | other pieces of Eq. 5 | [`lobes::Facets`], [`composed::Composed`] | `lobes.rs`, `composed.rs` | Eq. 5 |
+//! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
@@ -24,16 +26,18 @@
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
 
+mod bend;
 mod boxqp;
 pub mod brdf;
 mod candidate;
-pub mod composed;
 mod fresnel;
 pub mod geometry;
 pub mod joint;
 pub mod lm;
 pub mod lobes;
+pub mod microfacet;
 pub mod minima;
+pub mod model;
 pub mod pack;
 pub mod real;
 pub mod residuals;

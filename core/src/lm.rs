@@ -15,6 +15,39 @@ pub struct Linearization<R, const P: usize> {
     pub hessian: [[R; P]; P],
 }
 
+impl<R: Real, const P: usize> Linearization<R, P> {
+    /// That of no residuals.
+    pub fn zero() -> Self {
+        Linearization {
+            cost: R::ZERO,
+            gradient: [R::ZERO; P],
+            hessian: [[R::ZERO; P]; P],
+        }
+    }
+
+    /// Adds a residual with its derivatives by the parameters.
+    ///
+    /// ```
+    /// use brdfit_core::lm::Linearization;
+    ///
+    /// // The line a + b t through (0, 1) and (1, 3), at a = b = 0.
+    /// let mut sums = Linearization::<f64, 2>::zero();
+    /// for (t, y) in [(0.0, 1.0), (1.0, 3.0)] {
+    ///     sums.add(0.0 - y, &[1.0, t]);
+    /// }
+    /// assert_eq!((sums.cost, sums.gradient), (10.0, [-4.0, -3.0]));
+    /// ```
+    pub fn add(&mut self, residual: R, row: &[R; P]) {
+        self.cost += residual * residual;
+        for i in 0..P {
+            self.gradient[i] += row[i] * residual;
+            for j in 0..P {
+                self.hessian[i][j] += row[i] * row[j];
+            }
+        }
+    }
+}
+
 /// A least-squares problem in `P` parameters.
 pub trait Problem<R, const P: usize> {
     /// Sum of squared residuals at `x`.
@@ -25,6 +58,18 @@ pub trait Problem<R, const P: usize> {
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         let _ = (x, step);
         to
+    }
+}
+
+impl<R, S: Problem<R, P> + ?Sized, const P: usize> Problem<R, P> for &S {
+    fn cost(&self, x: &[R; P]) -> R {
+        (**self).cost(x)
+    }
+    fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
+        (**self).linearize(x)
+    }
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        (**self).bend(x, step, to)
     }
 }
 
@@ -115,7 +160,12 @@ pub struct Fit<R, const P: usize> {
 
 impl<R: Real, const P: usize> Fit<R, P> {
     /// Begins at the point of `bounds` nearest to `start`; one pass.
-    pub fn begin(problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, start: [R; P], options: &Options<R>) -> Self {
+    pub fn begin(
+        problem: &(impl Problem<R, P> + ?Sized),
+        bounds: &Bounds<R, P>,
+        start: [R; P],
+        options: &Options<R>,
+    ) -> Self {
         let x = bounds.clamp(start);
         let at = problem.linearize(&x);
         let mut fit = Fit {
@@ -145,14 +195,20 @@ impl<R: Real, const P: usize> Fit<R, P> {
     }
 
     /// Makes steps until the fit ends, or has made `passes` in all.
-    pub fn run(&mut self, problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, options: &Options<R>, passes: u32) {
+    pub fn run(
+        &mut self,
+        problem: &(impl Problem<R, P> + ?Sized),
+        bounds: &Bounds<R, P>,
+        options: &Options<R>,
+        passes: u32,
+    ) {
         while self.stop.is_none() && self.passes < passes {
             self.step(problem, bounds, options);
         }
     }
 
     /// One trial step: one pass, or none if the fit ends before it.
-    pub fn step(&mut self, problem: &impl Problem<R, P>, bounds: &Bounds<R, P>, options: &Options<R>) {
+    pub fn step(&mut self, problem: &(impl Problem<R, P> + ?Sized), bounds: &Bounds<R, P>, options: &Options<R>) {
         if self.stop.is_some() {
             return;
         }
@@ -227,7 +283,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
 
 /// A whole fit from one start.
 pub fn fit<R: Real, const P: usize>(
-    problem: &impl Problem<R, P>,
+    problem: &(impl Problem<R, P> + ?Sized),
     bounds: &Bounds<R, P>,
     start: [R; P],
     options: &Options<R>,

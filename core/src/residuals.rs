@@ -1,45 +1,37 @@
 //! A scan as a least-squares problem: the residual of ln f and its gradient, by blocks of sixteen rows (Eq. 15-17).
 
-use crate::brdf::{Brdf, Params, has, lobes, parameters, slot};
-use crate::fresnel::Index;
-use crate::geometry::{Block, LANES};
+use core::marker::PhantomData;
+
+use crate::brdf::{Params, get, has, slot};
+use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
+use crate::microfacet::Microfacet;
+use crate::model::{GROUP, Model, SUMS, Seen};
 use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
-/// The blocks of one scan, for a model of `TERMS` with its `P` parameters.
+/// The blocks of one scan, for model `M` with its `P` parameters, which needs `C` numbers of each pair of directions.
 ///
-/// The solver's coordinates are those parameters in the order of [`crate::brdf::NAMES`], with kappa^2 in place of kappa: F is even in kappa, so a search in kappa can not leave 0.
-#[derive(Clone, Copy, Debug)]
+/// The solver's coordinates are the model's parameters in their order, with kappa^2 in place of kappa: see [`crate::model::Parameter::is_squared`].
+#[derive(Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Scan<'a, R, const TERMS: u8, const P: usize> {
-    blocks: &'a [Block<R>],
-    /// cos theta_d nearest to the peak of each lobe.
-    peaks: Pack<R, 2>,
-    /// The least m that a few samples still see; dimensionless.
-    pub(crate) finest: R,
+pub struct Residuals<'a, R, M, const P: usize, const C: usize = 6> {
+    blocks: &'a [Block<R, LANES, C>],
+    pub(crate) seen: Seen<R>,
+    model: PhantomData<M>,
 }
 
-impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
-    const MATCHES: () = assert!(P == parameters(TERMS), "P must be parameters(TERMS)");
+/// The blocks of one scan, for `TERMS` of Eq. 14 with their `P` parameters.
+pub type Scan<'a, R, const TERMS: u8, const P: usize> = Residuals<'a, R, Microfacet<TERMS>, P>;
 
-    /// The scan whose observations are in `blocks`.
-    pub fn new(blocks: &'a [Block<R>]) -> Self {
-        let () = Self::MATCHES;
-        let (finest, peaks) = finest_slope(blocks.len() * LANES, |lobe, i| {
-            let block = blocks.get(i / LANES)?;
-            // So the compiler sees that no index is out of range.
-            let (lobe, lane) = (lobe % 2, i % LANES);
-            (block.weight[lane] > R::ZERO).then(|| (block.tan2_theta_h[lobe][lane], block.cos_theta_d[lobe][lane]))
-        });
-        Scan { blocks, peaks, finest }
+impl<R: Copy, M, const P: usize, const C: usize> Clone for Residuals<'_, R, M, P, C> {
+    fn clone(&self) -> Self {
+        *self
     }
+}
+impl<R: Copy, M, const P: usize, const C: usize> Copy for Residuals<'_, R, M, P, C> {}
 
-    /// Its observations.
-    pub fn blocks(&self) -> &'a [Block<R>] {
-        self.blocks
-    }
-
+impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     /// Solver coordinates of `params`.
     pub fn coordinates(params: &Params<R>) -> [R; P] {
         let mut x = [R::ZERO; P];
@@ -57,24 +49,14 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
 
     /// Parameters at solver coordinates; those of absent terms are 0, and n is 1.
     pub fn params(x: &[R; P]) -> Params<R> {
-        let mut params = Self::expand(x);
-        params.kappa = params.kappa.sqrt();
-        params
-    }
-
-    /// Derivatives of the parameters by the solver's coordinates at `x`: 1, and for kappa 1 / (2 kappa), or 0 at kappa = 0, where there is none.
-    pub fn slopes(x: &[R; P]) -> [R; P] {
-        let mut slopes = [R::ONE; P];
-        if has(TERMS, 5)
-            && let (Some(slope), Some(&kappa2)) = (slopes.get_mut(slot(TERMS, 5)), x.get(slot(TERMS, 5)))
-        {
-            *slope = if kappa2 > R::ZERO {
-                R::of(0.5) / kappa2.sqrt()
-            } else {
-                R::ZERO
-            };
+        Params {
+            rho_d: get(TERMS, x, 0, R::ZERO),
+            rho_s: get(TERMS, x, 1, R::ZERO),
+            rho_v: get(TERMS, x, 2, R::ZERO),
+            m: get(TERMS, x, 3, R::ONE),
+            n: get(TERMS, x, 4, R::ONE),
+            kappa: get(TERMS, x, 5, R::ZERO).sqrt(),
         }
-        slopes
     }
 
     /// The bounds on the solver's coordinates.
@@ -84,34 +66,67 @@ impl<'a, R: Real, const TERMS: u8, const P: usize> Scan<'a, R, TERMS, P> {
             upper: Self::coordinates(upper),
         }
     }
-
-    /// Parameter `index` of [`crate::brdf::NAMES`], or `absent`.
-    #[inline(always)]
-    pub(crate) fn get(x: &[R; P], index: usize, absent: R) -> R {
-        if has(TERMS, index) {
-            x.get(slot(TERMS, index)).copied().unwrap_or(absent)
-        } else {
-            absent
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn expand(x: &[R; P]) -> Params<R> {
-        Params {
-            rho_d: Self::get(x, 0, R::ZERO),
-            rho_s: Self::get(x, 1, R::ZERO),
-            rho_v: Self::get(x, 2, R::ZERO),
-            m: Self::get(x, 3, R::ONE),
-            n: Self::get(x, 4, R::ONE),
-            kappa: Self::get(x, 5, R::ZERO),
-        }
-    }
 }
 
-/// Number of partial sums that run side by side.
-pub(crate) const SUMS: usize = 8;
-/// Lanes of a block for each of them, which go through the model's formulas side by side.
-pub(crate) const GROUP: usize = LANES / SUMS;
+/// The observation of a sample for model `M`; the sign of its weight does not count.
+///
+/// # Errors
+/// [`SampleError`] tells what is wrong with the sample.
+pub fn observe<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
+    sample: &Sample<R>,
+) -> Result<Observation<R, [R; C]>, SampleError> {
+    let geometry = M::geometry(sample.theta_i, sample.theta_s, sample.delta_phi)?;
+    Observation::at(geometry, sample.brdf, sample.weight)
+}
+
+/// ln f of model `M` at the solver's coordinates `x` in the directions of `geometry` ([`Model::geometry`]), f in sr^-1.
+pub fn value<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> R {
+    M::row::<false>(&M::pass(x), &Block::of(geometry)).ln_f.0[0]
+}
+
+/// The same, and its derivatives by the solver's coordinates.
+pub fn ln_f<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> (R, [R; P]) {
+    let rows = M::row::<true>(&M::pass(x), &Block::of(geometry));
+    (rows.ln_f.0[0], rows.gradient.map(|column| column.0[0]))
+}
+
+impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'a, R, M, P, C> {
+    /// The scan whose observations are in `blocks`.
+    pub fn new(blocks: &'a [Block<R, LANES, C>]) -> Self {
+        Residuals {
+            blocks,
+            seen: M::seen(blocks),
+            model: PhantomData,
+        }
+    }
+
+    /// Its observations.
+    pub fn blocks(&self) -> &'a [Block<R, LANES, C>] {
+        self.blocks
+    }
+
+    /// Solver coordinates of the model's parameters.
+    pub fn from_values(values: &[R; P]) -> [R; P] {
+        let mut x = *values;
+        for (value, parameter) in x.iter_mut().zip(M::PARAMETERS) {
+            if parameter.is_squared() {
+                *value *= *value;
+            }
+        }
+        x
+    }
+
+    /// The model's parameters at solver coordinates.
+    pub fn values(x: &[R; P]) -> [R; P] {
+        let mut values = *x;
+        for (value, parameter) in values.iter_mut().zip(M::PARAMETERS) {
+            if parameter.is_squared() {
+                *value = value.sqrt();
+            }
+        }
+        values
+    }
+}
 
 /// Vector registers of 64 bytes are stored twice as fast where they do not straddle cache lines.
 #[repr(align(64))]
@@ -131,15 +146,13 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
     ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]))
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Problem<R, P> for Residuals<'_, R, M, P, C> {
     fn cost(&self, x: &[R; P]) -> R {
         self.inlined_cost(x)
     }
 
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        let weights = [(place(1), 0), (place(2), 1)];
-        bend(x, step, to, place(4), place(5), weights, self.peaks)
+        M::bend(&self.seen, x, step, to)
     }
 
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
@@ -147,18 +160,24 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for Scan<'_, R, TER
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     /// [`Problem::cost`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
             return self.cost_alone(x);
         }
-        match lobes(TERMS) {
-            0 => self.cost_of::<0>(x),
-            1 => self.cost_of::<GROUP>(x),
-            _ => self.cost_of::<{ 2 * GROUP }>(x),
+        let pass = M::pass(x);
+        let mut squares = [R::ZERO; SUMS];
+        for block in self.blocks {
+            let begun = M::begin(&pass, block);
+            for lane in 0..SUMS {
+                let model = M::rows::<false>(&pass, block, &begun, lane);
+                let residual = residual(block, lane, model.ln_f);
+                squares[lane] += residual.0[0] * residual.0[0] + residual.0[1] * residual.0[1];
+            }
         }
+        total(&squares)
     }
 
     /// [`Problem::linearize`], compiled into its caller.
@@ -167,49 +186,21 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
         if ALONE {
             return self.linearize_alone(x);
         }
-        match lobes(TERMS) {
-            0 => self.linearize_of::<0>(x),
-            1 => self.linearize_of::<GROUP>(x),
-            _ => self.linearize_of::<{ 2 * GROUP }>(x),
-        }
-    }
-
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn cost_of<const K: usize>(&self, x: &[R; P]) -> R {
-        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
-        let mut squares = [R::ZERO; SUMS];
-        for block in self.blocks {
-            let lift = brdf.lift(block);
-            for lane in 0..SUMS {
-                let model = brdf.rows::<K, GROUP, LANES, false>(block, &lift, lane);
-                let residual = residual(block, lane, model.ln_f);
-                squares[lane] += residual.0[0] * residual.0[0] + residual.0[1] * residual.0[1];
-            }
-        }
-        total(&squares)
-    }
-
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn linearize_of<const K: usize>(&self, x: &[R; P]) -> Linearization<R, P> {
-        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let pass = M::pass(x);
         let mut squares = Aligned([R::ZERO; SUMS]);
         let mut gradient = Aligned([[R::ZERO; SUMS]; P]);
         let mut hessian = Aligned([[[R::ZERO; SUMS]; P]; P]);
         for block in self.blocks {
-            let lift = brdf.lift(block);
+            let begun = M::begin(&pass, block);
             let mut residuals = Aligned([[R::ZERO; SUMS]; GROUP]);
             let mut rows = Aligned([[[R::ZERO; SUMS]; GROUP]; P]);
             for lane in 0..SUMS {
-                let model = brdf.rows::<K, GROUP, LANES, true>(block, &lift, lane);
+                let model = M::rows::<true>(&pass, block, &begun, lane);
                 let residual = residual(block, lane, model.ln_f);
                 for half in 0..GROUP {
                     residuals.0[half][lane] = residual.0[half];
-                    for i in 0..6 {
-                        if has(TERMS, i)
-                            && let Some(row) = rows.0.get_mut(slot(TERMS, i))
-                        {
-                            row[half][lane] = model.gradient[i].0[half];
-                        }
+                    for i in 0..P {
+                        rows.0[i][half][lane] = model.gradient[i].0[half];
                     }
                 }
             }
@@ -221,11 +212,8 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
                 }
             }
         }
-        let mut sums = Linearization {
-            cost: total(&squares.0),
-            gradient: [R::ZERO; P],
-            hessian: [[R::ZERO; P]; P],
-        };
+        let mut sums = Linearization::zero();
+        sums.cost = total(&squares.0);
         for i in 0..P {
             sums.gradient[i] = total(&gradient.0[i]);
             for j in 0..=i {
@@ -238,109 +226,14 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     }
 }
 
-/// The least m that a few samples still see, dimensionless, and cos theta_d nearest to the peak of each lobe; from (tan^2 theta_h, cos theta_d) by lobe and row, for those rows that have any.
-pub(crate) fn finest_slope<R: Real>(rows: usize, row: impl Fn(usize, usize) -> Option<(R, R)>) -> (R, Pack<R, 2>) {
-    let mut peaks = Pack::splat(R::ONE);
-    let mut finest = R::MAX;
-    for (lobe, peak) in peaks.0.iter_mut().enumerate() {
-        // The three smallest tan^2 theta_h.
-        let mut nearest = [R::MAX; 3];
-        for (mut tan2, cos_theta_d) in (0..rows).filter_map(|i| row(lobe, i)) {
-            if tan2 < nearest[0] {
-                *peak = cos_theta_d;
-            }
-            for place in &mut nearest {
-                if tan2 < *place {
-                    core::mem::swap(place, &mut tan2);
-                }
-            }
-        }
-        finest = finest.min(nearest[2]);
-    }
-    (R::of(0.3) * finest.sqrt(), peaks)
-}
-
-/// What is to be added to n + d n and kappa^2 + d kappa^2 so that Re 1/(n - i kappa) and (Im 1/(n - i kappa))^2 change by what they do to first order; nothing where that would make |n - i kappa| more than four times what it is.
-///
-/// All of second order, and written so that nothing cancels.
-fn straighten<R: Real>([n, kappa2]: [R; 2], [d_n, d_kappa2]: [R; 2]) -> [R; 2] {
-    let (one, two, quarter) = (R::ONE, R::of(2.0), R::of(0.25));
-    let q = n * n + kappa2;
-    // Relative changes of q, of n, and of Re 1/(n - i kappa) = n/q; then the change of 1/q.
-    let u = (two * n * d_n + d_kappa2) / q;
-    let v = d_n / n;
-    let w = v - u;
-    let s = (n * w) * (n * w) / q;
-    let d = one - u + s;
-    if !(w > quarter - one && d > quarter * quarter && kappa2 + d_kappa2 >= two * kappa2 * u) {
-        return [R::ZERO; 2];
-    }
-    let e = u - s;
-    [
-        n * (u * v - s * (one + v)) / d,
-        (two * d_kappa2 * u - (kappa2 + d_kappa2) * (two * s + e * e)) / (d * d),
-    ]
-}
-
-/// Moves n and kappa where 1/(n - i kappa) goes straight, and then keeps rho F at the peak of each lobe where the linear model puts it.
-///
-/// F at large |n - i kappa| is a function of that inverse, nearly linear; in n and kappa the way there and back is long and curved.
-/// And n and kappa change F at the peak, and hardly anything else that a scan sees.
-/// `n`, `kappa2` and the weights are places of coordinates; each weight comes with the geometry of its lobe.
-pub(crate) fn bend<R: Real, const P: usize>(
-    x: &[R; P],
-    step: &[R; P],
-    to: [R; P],
-    n: Option<usize>,
-    kappa2: Option<usize>,
-    weights: impl IntoIterator<Item = (Option<usize>, usize)>,
-    peaks: Pack<R, 2>,
-) -> [R; P] {
-    let at = |x: &[R; P], place: Option<usize>, absent: R| place.and_then(|k| x.get(k).copied()).unwrap_or(absent);
-    if n.is_none() {
-        return to;
-    }
-    let (old_n, old_kappa2) = (at(x, n, R::ONE), at(x, kappa2, R::ZERO));
-    let (d_n, d_kappa2) = (at(step, n, R::ZERO), at(step, kappa2, R::ZERO));
-    let mut bent = to;
-    for (place, more) in [n, kappa2]
-        .into_iter()
-        .zip(straighten([old_n, old_kappa2], [d_n, d_kappa2]))
-    {
-        if let Some(value) = place.and_then(|k| bent.get_mut(k)) {
-            *value += more;
-        }
-    }
-    let from = Index::new(old_n, old_kappa2).reflect::<2, true>(peaks);
-    let (new_n, new_kappa2) = (
-        at(&bent, n, R::ONE).max(R::ONE),
-        at(&bent, kappa2, R::ZERO).max(R::ZERO),
-    );
-    let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
-    let d_n2 = R::of(2.0) * old_n * d_n;
-    for (place, lobe) in weights {
-        // So the compiler sees that no index is out of range.
-        let lobe = lobe % 2;
-        let Some(rho) = place.and_then(|k| bent.get_mut(k)) else {
-            continue;
-        };
-        let d_f = from.d_n2.0[lobe] * d_n2 + from.d_kappa2.0[lobe] * d_kappa2;
-        let amplitude = from.f.0[lobe] * at(&to, place, R::ZERO) + at(x, place, R::ZERO) * d_f;
-        if amplitude > R::ZERO && there.f.0[lobe] > R::TINY {
-            *rho = amplitude / there.f.0[lobe];
-        }
-    }
-    bent
-}
-
 /// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
-impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     fn cost_alone(&self, x: &[R; P]) -> R {
-        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let pass = M::pass(x);
         let mut squares = [R::ZERO; SUMS];
         for block in self.blocks {
             for (lane, sum) in squares.iter_mut().enumerate() {
-                let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, TERMS, P>(&brdf, block, lane));
+                let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(&pass, block, lane));
                 *sum += a * a + b * b;
             }
         }
@@ -348,9 +241,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
     }
 
     fn linearize_alone(&self, x: &[R; P]) -> Linearization<R, P> {
-        let brdf = Brdf::<R, TERMS>::with_kappa2(&Self::expand(x));
+        let pass = M::pass(x);
         // In the order of `total`.
-        let two = |lane| add(self.partial(&brdf, lane), &self.partial(&brdf, lane + 1));
+        let two = |lane| add(self.partial(&pass, lane), &self.partial(&pass, lane + 1));
         let four = |lane| add(two(lane), &two(lane + 2));
         let mut sums = add(four(0), &four(4));
         for i in 0..P {
@@ -363,14 +256,10 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
 
     /// The sums over one of the first eight lanes, and its other half, of all blocks; of J'J the lower half.
     #[inline(never)]
-    fn partial(&self, brdf: &Brdf<R, TERMS>, lane: usize) -> Linearization<R, P> {
-        let mut sums = Linearization {
-            cost: R::ZERO,
-            gradient: [R::ZERO; P],
-            hessian: [[R::ZERO; P]; P],
-        };
+    fn partial(&self, pass: &M::Pass, lane: usize) -> Linearization<R, P> {
+        let mut sums = Linearization::zero();
         for block in self.blocks {
-            let [(a, a_row), (b, b_row)] = [lane, lane + SUMS].map(|lane| row::<R, TERMS, P>(brdf, block, lane));
+            let [(a, a_row), (b, b_row)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(pass, block, lane));
             sums.cost += a * a + b * b;
             for i in 0..P {
                 sums.gradient[i] += a_row[i] * a + b_row[i] * b;
@@ -395,21 +284,21 @@ fn add<R: Real, const P: usize>(mut x: Linearization<R, P>, y: &Linearization<R,
 }
 
 /// Residual and row of J of one lane.
-fn row<R: Real, const TERMS: u8, const P: usize>(brdf: &Brdf<R, TERMS>, block: &Block<R>, lane: usize) -> (R, [R; P]) {
+fn row<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
+    pass: &M::Pass,
+    block: &Block<R, LANES, C>,
+    lane: usize,
+) -> (R, [R; P]) {
     let one = block.lane(lane);
-    let model = brdf.row::<true>(&one);
+    let model = M::row::<true>(pass, &one);
     let mut row = [R::ZERO; P];
-    for i in 0..6 {
-        if has(TERMS, i)
-            && let Some(place) = row.get_mut(slot(TERMS, i))
-        {
-            *place = model.gradient[i].0[0];
-        }
+    for (value, column) in row.iter_mut().zip(&model.gradient) {
+        *value = column.0[0];
     }
     ((model.ln_f.0[0] - one.ln_f[0]) * one.weight[0], row)
 }
 
 #[inline(always)]
-fn residual<R: Real>(block: &Block<R>, lane: usize, ln_f: Pack<R, GROUP>) -> Pack<R, GROUP> {
+fn residual<R: Real, const C: usize>(block: &Block<R, LANES, C>, lane: usize, ln_f: Pack<R, GROUP>) -> Pack<R, GROUP> {
     (ln_f - Pack::gather(&block.ln_f, lane)) * Pack::gather(&block.weight, lane)
 }

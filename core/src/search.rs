@@ -139,7 +139,7 @@ impl<R: Real, const P: usize> Found<R, P> {
 
 /// Fit `i` of the paper's method: from a start uniform over the bounds to convergence (section 3 of the paper).
 pub fn paper_fit<R: Real, const P: usize>(
-    problem: &impl Problem<R, P>,
+    problem: &(impl Problem<R, P> + ?Sized),
     bounds: &Bounds<R, P>,
     seed: u64,
     i: u64,
@@ -152,7 +152,7 @@ pub fn paper_fit<R: Real, const P: usize>(
 ///
 /// `fits` are those of [`paper_fit`] in order of start, made one by one or on many threads.
 pub fn paper<R: Real, const P: usize>(
-    problem: &impl Problem<R, P>,
+    problem: &(impl Problem<R, P> + ?Sized),
     bounds: &Bounds<R, P>,
     fits: impl IntoIterator<Item = Fit<R, P>>,
     options: &Options<R>,
@@ -172,7 +172,7 @@ pub fn paper<R: Real, const P: usize>(
 
 /// The default method; `candidates` limits the number of candidates, not counting the variations.
 pub fn search<R: Real, const P: usize>(
-    scene: &impl Scene<R, P>,
+    scene: &(impl Scene<R, P> + ?Sized),
     bounds: &Bounds<R, P>,
     seed: u64,
     candidates: u32,
@@ -217,7 +217,7 @@ pub fn search<R: Real, const P: usize>(
     Found::new(best, minima, evaluations)
 }
 
-struct Search<'a, R, S, const P: usize> {
+struct Search<'a, R, S: ?Sized, const P: usize> {
     scene: &'a S,
     bounds: &'a Bounds<R, P>,
     seed: u64,
@@ -228,7 +228,7 @@ struct Search<'a, R, S, const P: usize> {
     evaluations: Evaluations,
 }
 
-impl<R: Real, S: Scene<R, P>, const P: usize> Search<'_, R, S, P> {
+impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
     /// Candidates by rank, the best of them by cost, short fits of the best of those, convergence of the best of these.
     fn round(&mut self, indices: Range<u32>, like: Option<&[R; P]>, tried: usize, stages: &[(usize, u32)]) {
         let mut ranked: Vec<(R, u32, [R; P]), TRIED> = Vec::new();

@@ -22,27 +22,25 @@ fn mix(x: u64) -> u64 {
 
 /// Uniform over the box (section 3 of the paper).
 pub fn uniform<R: Real, const P: usize>(seed: u64, i: u64, bounds: &Bounds<R, P>) -> [R; P] {
-    let mut random = generator(seed, i);
-    let mut x = bounds.lower;
-    for (k, value) in x.iter_mut().enumerate() {
+    let u = unit::<R, P>(seed, i);
+    core::array::from_fn(|k| {
         let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
-        *value = (lower + (upper - lower) * R::unit(random.next_u64())).min(upper);
-    }
-    x
+        (lower + (upper - lower) * u[k]).min(upper)
+    })
 }
 
-/// `D` numbers in [0, 1) for candidate `i`: Kronecker's sequence of the generalised golden ratio, shifted by the seed.
+/// `P` independent numbers in [0, 1).
+pub fn unit<R: Real, const P: usize>(seed: u64, i: u64) -> [R; P] {
+    let mut random = generator(seed, i);
+    core::array::from_fn(|_| R::unit(random.next_u64()))
+}
+
+/// Three numbers in [0, 1) for candidate `i`: Kronecker's sequence of the generalised golden ratio, shifted by the seed.
 ///
-/// It fills the cube more evenly than random points: any `k` successive ones leave no gap much wider than `k^(-1/D)`.
-pub fn even<R: Real, const D: usize>(seed: u64, i: u64) -> [R; D] {
-    // Steps 2^64 / g^k, where g is the root of g^(D+1) = g + 1; for D = 3, g = 1.2207440846...
+/// It fills the cube more evenly than random points: any `k` successive ones leave no gap much wider than `k^(-1/3)`.
+pub fn even<R: Real>(seed: u64, i: u64) -> [R; 3] {
+    // Steps 2^64 / g^k, where g = 1.2207440846... is the root of g^4 = g + 1.
     const STEPS: [u64; 3] = [0xd1b5_4a32_d192_ed03, 0xabc9_8388_fb8f_ac03, 0x8cb9_2ba7_2f3d_8dd7];
     let mut random = generator(seed, u64::MAX);
-    let mut point = [R::ZERO; D];
-    for (k, value) in point.iter_mut().enumerate() {
-        let shift = random.next_u64();
-        let step = STEPS[k % STEPS.len()];
-        *value = R::unit(shift.wrapping_add(step.wrapping_mul(i)));
-    }
-    point
+    STEPS.map(|step| R::unit(random.next_u64().wrapping_add(step.wrapping_mul(i))))
 }

@@ -5,10 +5,11 @@ use std::io::Write;
 
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
-use crate::batch::{self, merge};
+use crate::commands::{
+    batch, compare, completions, converge, export, fit, joint, man, merge, paper, profile, report, simulate, stability,
+};
 use crate::error::{EXIT_CODE, Error};
 use crate::streams::{Ended, Streams};
-use crate::{compare, converge, export, fit, joint, page, paper, profile, shell, simulate, stability};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -34,19 +35,19 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Fit(fit::Arguments),
-    Report(page::Arguments),
+    Report(report::Arguments),
     Batch(batch::Arguments),
     Merge(merge::Arguments),
     Simulate(simulate::Arguments),
     Paper(paper::Arguments),
-    Profile(profile::command::Arguments),
+    Profile(profile::Arguments),
     Compare(compare::Arguments),
     Joint(joint::Arguments),
     Converge(converge::Arguments),
     Stability(stability::Arguments),
     Export(export::Arguments),
-    Completions(shell::Completions),
-    Man(shell::Manual),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// The program's commands and options, of which help, completions and manual are made.
@@ -115,18 +116,18 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
-        Command::Report(arguments) => page::run(arguments, given, streams),
+        Command::Report(arguments) => report::run(arguments, given, streams),
         Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
-        Command::Profile(arguments) => profile::command::run(arguments, streams),
+        Command::Profile(arguments) => profile::run(arguments, streams),
         Command::Compare(arguments) => compare::run(arguments, streams),
         Command::Joint(arguments) => joint::run(arguments, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),
-        Command::Completions(arguments) => shell::completions(arguments, Cli::command(), streams),
-        Command::Man(arguments) => shell::manual(arguments, Cli::command(), streams),
+        Command::Completions(arguments) => completions::run(arguments, Cli::command(), streams),
+        Command::Man(arguments) => man::run(arguments, Cli::command(), streams),
     }?;
     Ok(Ended::default())
 }

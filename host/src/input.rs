@@ -1,28 +1,22 @@
 //! Reads scans: from the bytes of a file to samples in radians and sr^-1, with their weights.
 //!
-//! A file goes through [`mod@format`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
+//! A file goes through the table in [`mod@formats`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
 //! [`check`] makes samples of these: units, masks, validity, weights.
 //! Degrees and file formats exist here and in `simulate` only.
 
-mod astm;
-mod bird;
 pub mod bytes;
 pub mod check;
 pub mod columns;
 mod direction;
 pub mod format;
-mod fred;
+mod formats;
 pub mod left_out;
-mod lumos;
-mod matrix;
-mod merl;
 pub mod options;
 pub mod raw;
 mod rows;
 mod table;
 pub mod units;
 pub mod weight;
-mod zemax;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -139,7 +133,7 @@ pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Res
 /// As [`read`].
 pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
     let scans = || -> Result<Vec<Measurement>, Error> {
-        let (format, scans) = format::scans(bytes, options)?;
+        let (format, scans) = formats::scans(bytes, options)?;
         let scans = raw::select(scans, &options.column)?;
         let each = scans.into_iter();
         each.map(|scan| check::measurement(file, format, scan, options))

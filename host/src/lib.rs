@@ -1,34 +1,41 @@
 //! Finds the parameters of microfacet BRDF models from scatterometer scans.
 //!
-//! The mathematics is in [`brdfit_core`], the searches are compiled in [`engine`]; this crate reads files, chooses what to run, and reports.
+//! The mathematics is in [`brdfit_core`], the searches are compiled in [`engine`]; this crate reads files, chooses what to run, and writes what was found.
 //!
-//! A file becomes one or more [`input::Measurement`]s, that an [`engine::Outcome`], and that a [`report`]; [`cli`] strings them together, and every failure is an [`error::Error`].
+//! Each room may import from those above it, and no file imports in a circle:
+//!
+//! | Room | What it holds |
+//! |---|---|
+//! | [`error`], [`streams`], [`output`], [`interrupt`] | failures, what a command reads and writes, whole-or-nothing files |
+//! | [`terms`], [`parameters`], [`names`], [`number`] | words and numbers: terms, parameters and their ranges, methods, digits |
+//! | [`input`] | a file becomes one or more [`input::Measurement`]s |
+//! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
+//! | [`result`](mod@result) | a fitted scan as text, JSON or CSV |
+//! | [`plot`] | figures as SVG and PNG, from plain data |
+//! | [`page`] | the HTML page on fitted scans |
+//! | [`export`] | a fitted model for other programs |
+//! | [`options`] | the options that several commands have |
+//! | `commands` | one file or folder a command |
+//! | [`cli`] | the command line, which strings the commands together |
+//!
+//! Every failure is an [`error::Error`].
 
 pub use brdfit_engine as engine;
 
-pub mod batch;
-pub mod bootstrap;
-pub mod choose;
+pub mod analysis;
 pub mod cli;
-pub mod compare;
-pub mod converge;
-pub mod derived;
+mod commands;
 pub mod error;
 pub mod export;
-pub mod fit;
 pub mod input;
 pub mod interrupt;
-pub mod joint;
+pub mod names;
+pub mod number;
 pub mod options;
 pub mod output;
 pub mod page;
-pub mod paper;
+pub mod parameters;
 pub mod plot;
-pub mod profile;
-pub mod reflectance;
-pub mod report;
-pub mod shell;
-pub mod simulate;
-pub mod stability;
+pub mod result;
 pub mod streams;
-pub mod uncertainty;
+pub mod terms;

@@ -1,11 +1,13 @@
 //! What the options of the command line mean to the engine.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, Params, SURFACE, VOLUME, has};
+use brdfit_core::brdf::{ALL, NAMES, Params};
 use clap::{Args, ValueEnum};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::engine::{FitOptions, Method, Precision, TERM_SETS};
+use crate::engine::{FitOptions, Method, Precision};
 use crate::error::{Error, shown};
+use crate::parameters::{Range, apply, check, parameter};
+use crate::terms::terms;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
 #[derive(Args, Debug)]
@@ -95,86 +97,10 @@ impl SearchArguments {
 /// The word for terms that the scan chooses.
 const AUTO: &str = "auto";
 
-/// The terms of the model by name.
-pub const TERMS: [(&str, u8); 4] = [
-    ("diffuse", DIFFUSE),
-    ("surface", SURFACE),
-    ("volume", VOLUME),
-    ("absorbing", ABSORBING),
-];
-
-/// The names in a set of terms.
-pub fn term_names(terms: u8) -> Vec<&'static str> {
-    let present = TERMS.iter().filter(|(_, bit)| terms & bit != 0);
-    present.map(|&(name, _)| name).collect()
-}
-
-/// The set of terms in a list such as `diffuse,surface`, or `all`.
-///
-/// # Errors
-/// An unknown name, or a set that is not compiled in.
-pub fn terms(list: &str) -> Result<u8, Error> {
-    let fail = |what: String| {
-        let sets: Vec<String> = TERM_SETS.iter().map(|&set| term_names(set).join(",")).collect();
-        Error::new(what).help(format!("--terms takes one of: {}", sets.join(" | ")))
-    };
-    if list == "all" {
-        return Ok(ALL);
-    }
-    let mut set = 0;
-    for name in list.split(',').map(str::trim) {
-        match TERMS.iter().find(|(known, _)| *known == name) {
-            Some((_, bit)) => set |= bit,
-            None => return Err(fail(format!("there is no term '{}'", shown(name)))),
-        }
-    }
-    if TERM_SETS.contains(&set) {
-        Ok(set)
-    } else {
-        Err(fail(format!("there is no model of just the terms {list}")))
-    }
-}
-
-/// A permitted range of one parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Place in [`NAMES`].
-    pub index: usize,
-    /// Least value.
-    pub lower: f64,
-    /// Largest value; equal to `lower` it holds the parameter fixed.
-    pub upper: f64,
-}
-
-/// The least and the largest value that parameter `index` of [`NAMES`] can have at all.
-///
-/// Physics gives rho >= 0, m > 0, n >= 1 and kappa >= 0; the other ends keep the arithmetic of `f32` finite.
-pub fn domain(index: usize) -> (f64, f64) {
-    const LARGEST: f64 = 1e6;
-    match NAMES[index] {
-        "m" => (1e-6, LARGEST),
-        "n" => (1.0, LARGEST),
-        _ => (0.0, LARGEST),
-    }
-}
-
-/// Refuses a value that parameter `index` can not have.
-///
-/// # Errors
-/// The value is NaN or outside [`domain`].
-pub fn check(index: usize, value: f64) -> Result<(), Error> {
-    let (least, largest) = domain(index);
-    if value >= least && value <= largest {
-        return Ok(());
-    }
-    Err(Error::new(format!("{} can not be {value}", NAMES[index]))
-        .help(format!("take a number from {least} to {largest}")))
-}
-
 /// Reads `NAME=LO:HI`.
 ///
 /// # Errors
-/// Another form, an unknown name, the wrong order, or a value outside [`domain`].
+/// Another form, an unknown name, the wrong order, or a value outside [`crate::parameters::domain`].
 pub fn bounds(text: &str) -> Result<Range, Error> {
     let form = || Error::new(format!("'{}' gives no bounds", shown(text))).help("write --bounds NAME=LO:HI");
     let (name, range) = text.split_once('=').ok_or_else(form)?;
@@ -193,7 +119,7 @@ pub fn bounds(text: &str) -> Result<Range, Error> {
 /// Reads `NAME=VALUE`, which holds a parameter fixed.
 ///
 /// # Errors
-/// Another form, an unknown name, or a value outside [`domain`].
+/// Another form, an unknown name, or a value outside [`crate::parameters::domain`].
 pub fn fixed(text: &str) -> Result<Range, Error> {
     let form = || Error::new(format!("'{}' fixes nothing", shown(text))).help("write --fix NAME=VALUE");
     let (name, value) = text.split_once('=').ok_or_else(form)?;
@@ -210,7 +136,7 @@ pub fn fixed(text: &str) -> Result<Range, Error> {
 /// Reads `rho_d=0.1,rho_s=10,...`, each parameter once; `option` is what messages call it.
 ///
 /// # Errors
-/// A parameter is unknown, missing, given twice, or outside [`domain`].
+/// A parameter is unknown, missing, given twice, or outside [`crate::parameters::domain`].
 pub fn all_parameters(list: &str, option: &str) -> Result<Params<f64>, Error> {
     let mut values = [None; NAMES.len()];
     for member in list.split(',') {
@@ -237,37 +163,6 @@ pub fn all_parameters(list: &str, option: &str) -> Result<Params<f64>, Error> {
     Ok(Params::from_array(values.map(Option::unwrap_or_default)))
 }
 
-/// Narrows or widens the bounds of the model's parameters to `ranges`.
-///
-/// # Errors
-/// A parameter is named twice, or is not part of `terms`.
-pub fn apply(ranges: &[Range], terms: u8, lower: &mut Params<f64>, upper: &mut Params<f64>) -> Result<(), Error> {
-    let (mut least, mut largest) = (lower.to_array(), upper.to_array());
-    for (place, range) in ranges.iter().enumerate() {
-        let name = NAMES[range.index];
-        if ranges[..place].iter().any(|other| other.index == range.index) {
-            return Err(Error::new(format!("{name} is bounded or fixed twice")).help("keep one of the options"));
-        }
-        if !has(terms, range.index) {
-            let names = term_names(terms).join(",");
-            return Err(Error::new(format!("{name} is no parameter of the terms {names}"))
-                .help("leave out its --bounds or --fix, or take more --terms"));
-        }
-        least[range.index] = range.lower;
-        largest[range.index] = range.upper;
-    }
-    (*lower, *upper) = (Params::from_array(least), Params::from_array(largest));
-    Ok(())
-}
-
-fn parameter(name: &str) -> Result<usize, Error> {
-    let known = NAMES.iter().position(|known| *known == name.trim());
-    known.ok_or_else(|| {
-        Error::new(format!("there is no parameter '{}'", shown(name)))
-            .help(format!("the parameters are {}", NAMES.join(", ")))
-    })
-}
-
 fn number(text: &str) -> Result<f64, Error> {
     let parsed = text.trim().parse();
     parsed.map_err(|_| Error::new(format!("'{}' is not a number", shown(text))).help("write it like 0.5 or 1e-3"))
@@ -275,18 +170,9 @@ fn number(text: &str) -> Result<f64, Error> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use brdfit_core::brdf::{DIFFUSE, SURFACE};
 
-    #[test]
-    fn reads_terms() {
-        assert_eq!(terms("surface,diffuse").unwrap(), DIFFUSE | SURFACE);
-        assert_eq!(terms("all").unwrap(), ALL);
-        assert!(terms("volume").unwrap_err().to_string().contains("diffuse,surface |"));
-        assert!(terms("shiny").is_err() && terms("").is_err());
-        for set in TERM_SETS {
-            assert_eq!(terms(&term_names(set).join(",")).unwrap(), set);
-        }
-    }
+    use super::*;
 
     #[test]
     fn refuses_bad_bounds() {

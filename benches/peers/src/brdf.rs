@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use brdfit::engine::trace::{Trace, passes, trace};
-use brdfit::converge::{Subject, paper_scans};
+use brdfit::analysis::paper_sets::{Subject, paper_scans};
 use brdfit::engine::FitOptions;
 use brdfit_core::lm::Bounds;
 use brdfit_core::real::Real;

@@ -1,4 +1,4 @@
-use super::Distribution;
+use super::{Distribution, Shadowing};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -10,13 +10,21 @@ pub struct Beckmann;
 const ALL_VISIBLE: f64 = 1.6;
 
 impl Distribution for Beckmann {
+    const UNDERFLOWS: bool = true;
+
     #[inline(always)]
-    fn shape<R: Real, const K: usize>(t: Pack<R, K>) -> (Pack<R, K>, Pack<R, K>) {
-        let exponent = t.map(|t| -t);
-        let g = exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e });
-        (g, Pack::splat(-R::ONE))
+    fn shape<R: Real, const K: usize>(t: Pack<R, K>, shift: Pack<R, K>, _q: R) -> Pack<R, K> {
+        let exponent = (t.map(|t| -t) - shift).map(|x| x.min(R::LIFT));
+        exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e })
     }
 
+    #[inline(always)]
+    fn fall<R: Real, const K: usize>(t: Pack<R, K>, _q: R) -> Pack<R, K> {
+        t
+    }
+}
+
+impl Shadowing for Beckmann {
     /// Walter, Marschner, Li and Torrance 2007, section 5.2: with `a = 1 / (m tan theta)`, `(3.535 a + 2.181 a^2) / (1 + 2.276 a + 2.577 a^2)` below `a = 1.6` and 1 above.
     #[inline(always)]
     fn visible<R: Real, const K: usize>(a2: Pack<R, K>) -> (Pack<R, K>, Pack<R, K>) {

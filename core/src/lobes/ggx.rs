@@ -1,4 +1,4 @@
-use super::Distribution;
+use super::{Distribution, Shadowing};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -8,11 +8,19 @@ pub struct Ggx;
 
 impl Distribution for Ggx {
     #[inline(always)]
-    fn shape<R: Real, const K: usize>(t: Pack<R, K>) -> (Pack<R, K>, Pack<R, K>) {
+    fn shape<R: Real, const K: usize>(t: Pack<R, K>, _shift: Pack<R, K>, _q: R) -> Pack<R, K> {
         let inverse = (t + R::ONE).map(|x| R::ONE / x);
-        (inverse * inverse, inverse * -R::of(2.0))
+        inverse * inverse
     }
 
+    #[inline(always)]
+    fn fall<R: Real, const K: usize>(t: Pack<R, K>, _q: R) -> Pack<R, K> {
+        let inverse = (t + R::ONE).map(|x| R::ONE / x);
+        t * inverse * R::of(2.0)
+    }
+}
+
+impl Shadowing for Ggx {
     /// Walter et al. 2007, Eq. 34: `2 / (1 + sqrt(1 + m^2 tan^2 theta))`.
     #[inline(always)]
     fn visible<R: Real, const K: usize>(a2: Pack<R, K>) -> (Pack<R, K>, Pack<R, K>) {

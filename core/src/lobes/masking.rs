@@ -1,4 +1,5 @@
-use super::{Distribution, Facets, Lanes, Masking};
+use super::{Masking, Shadowing};
+use crate::geometry::{Geometry, SampleError};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -6,24 +7,9 @@ use crate::real::Real;
 #[derive(Clone, Copy, Debug)]
 pub struct VGroove;
 
-impl<D> Masking<D> for VGroove {
-    #[inline(always)]
-    fn masking<R: Real>(facets: &Facets<R>, _m: R) -> (Lanes<R>, Lanes<R>) {
-        (facets.v_groove, Pack::splat(R::ZERO))
-    }
-}
-
-/// Smith 1967: the chance that a facet is hidden does not depend on its own slope; theta_i and theta_s each on their own.
-#[derive(Clone, Copy, Debug)]
-pub struct Smith;
-
-impl<D: Distribution> Masking<D> for Smith {
-    #[inline(always)]
-    fn masking<R: Real>(facets: &Facets<R>, m: R) -> (Lanes<R>, Lanes<R>) {
-        let m2 = m * m;
-        let (g_i, slope_i) = D::visible(facets.tan2_theta[0] * m2);
-        let (g_s, slope_s) = D::visible(facets.tan2_theta[1] * m2);
-        (g_i * g_s, slope_i * g_s + g_i * slope_s)
+impl<D> Masking<D, 6> for VGroove {
+    fn geometry<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; 6], SampleError> {
+        Ok(Geometry::new(theta_i, theta_s, delta_phi)?.into())
     }
 }
 
@@ -31,9 +17,45 @@ impl<D: Distribution> Masking<D> for Smith {
 #[derive(Clone, Copy, Debug)]
 pub struct NoMasking;
 
-impl<D> Masking<D> for NoMasking {
-    #[inline(always)]
-    fn masking<R: Real>(_facets: &Facets<R>, _m: R) -> (Lanes<R>, Lanes<R>) {
-        (Pack::splat(R::ONE), Pack::splat(R::ZERO))
+impl<D> Masking<D, 6> for NoMasking {
+    fn geometry<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; 6], SampleError> {
+        Ok(unmasked(theta_i, theta_s, delta_phi)?.into())
     }
+}
+
+/// Smith 1967: the chance that a facet is hidden does not depend on its own slope; theta_i and theta_s each on their own.
+#[derive(Clone, Copy, Debug)]
+pub struct Smith;
+
+impl<D: Shadowing> Masking<D, 8> for Smith {
+    const SLOPED: bool = true;
+
+    fn geometry<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; 8], SampleError> {
+        let [a, b, c, d, e, f] = unmasked(theta_i, theta_s, delta_phi)?.into();
+        let tan2 = |theta: R| {
+            let (sin, cos) = theta.sin_cos();
+            (sin / cos) * (sin / cos)
+        };
+        Ok([a, b, c, d, e, f, tan2(theta_i), tan2(theta_s)])
+    }
+
+    #[inline(always)]
+    fn masking<R: Real, const K: usize>(
+        [tan2_theta_i, tan2_theta_s]: [Pack<R, K>; 2],
+        m2: Pack<R, K>,
+    ) -> (Pack<R, K>, Pack<R, K>) {
+        let (g_i, slope_i) = D::visible(tan2_theta_i * m2);
+        let (g_s, slope_s) = D::visible(tan2_theta_s * m2);
+        (g_i * g_s, slope_i / g_i + slope_s / g_s)
+    }
+}
+
+/// Eq. 14's geometry without Eq. 9 in the factor of the surface lobe.
+fn unmasked<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<Geometry<R>, SampleError> {
+    let mut geometry = Geometry::new(theta_i, theta_s, delta_phi)?;
+    let (cos_i, cos_s) = (theta_i.sin_cos().1, theta_s.sin_cos().1);
+    let surface = &mut geometry.lobes[0];
+    let inverse_cos2 = R::ONE + surface.tan2_theta_h;
+    surface.factor = R::of(0.25) / (cos_i * cos_s) * (inverse_cos2 * inverse_cos2) / R::PI;
+    Ok(geometry)
 }

@@ -4,9 +4,13 @@
 //!
 //! [`FitOptions`] and samples go into [`fit`], an [`Outcome`] comes out; what it says does not depend on threads or instructions.
 
+mod compiled;
+mod layout;
+mod model;
 mod options;
 mod outcome;
 mod search;
+mod values;
 
 pub mod joint;
 pub mod models;
@@ -15,6 +19,9 @@ pub mod simd;
 pub mod trace;
 pub mod uncertainty;
 
+pub use compiled::{Kernel, blocks};
+pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
-pub use outcome::{FitError, Minimum, Outcome, ln_f};
-pub use search::{blocks, descend, fit};
+pub use outcome::{FitError, Minimum, Outcome};
+pub use search::{descend, fit};
+pub use values::{MOST, Values};

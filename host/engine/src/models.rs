@@ -1,176 +1,99 @@
-//! The models that are compared, each compiled as it is.
+//! Every model that is compiled in, that of the paper first.
 
-use brdfit_core::composed::{Composed, NAMES, OWN_SLOPE, SECOND, slot};
-use brdfit_core::geometry::{Sample, SampleError};
-use brdfit_core::lm::{Bounds, Options};
-use brdfit_core::lobes::{Beckmann, Distribution, Facets, Ggx, Masking, NoMasking, Smith, VGroove};
-use brdfit_core::real::Real;
-use brdfit_core::search::{CANDIDATES, search};
+use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
+use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, Masking, NoMasking, Smith, VGroove};
+use brdfit_core::microfacet::Microfacet;
 
-use crate::FitError;
+use crate::Model;
+use crate::compiled::{Compiled, compile, parameters_of};
 
-type Fit = fn(&Model, &[Sample<f64>], u64) -> Result<Fitted, FitError>;
+/// What is new in a model is said in its source; all of these are put together from Eq. 5 of the paper.
+const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
-/// A model that can be compared.
-#[derive(Clone, Copy)]
-pub struct Model {
-    /// What `--models` calls it.
-    pub name: &'static str,
-    /// What it is made of.
-    pub what: &'static str,
-    /// Number of its parameters.
-    pub parameters: usize,
-    fit: Fit,
-    ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
-}
-
-/// A model's fit to a scan.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
-    /// The model's name.
-    pub model: &'static str,
-    /// Samples of weight above 0.
-    pub samples: usize,
-    /// Sum of squared residuals of ln f.
-    pub cost: f64,
-    /// Its distinct minima.
-    pub minima: usize,
-    /// Names and values of its parameters.
-    pub parameters: Vec<(&'static str, f64)>,
-}
-
-impl Fitted {
-    /// Eq. 17.
-    pub fn mse2(&self) -> f64 {
-        self.cost / (self.samples * self.samples) as f64
-    }
-
-    /// Root of the mean squared residual of ln f.
-    pub fn rms_ln(&self) -> f64 {
-        (self.cost / self.samples as f64).sqrt()
-    }
-
-    /// Akaike's criterion with Hurvich and Tsai's correction, the variance of the residuals counted as a parameter; infinite with too few samples.
-    pub fn aicc(&self) -> f64 {
-        let (samples, k) = (self.samples as f64, self.parameters.len() as f64 + 1.0);
-        let room = samples - k - 1.0;
-        if room > 0.0 {
-            samples * Real::ln(self.cost / samples) + 2.0 * k + 2.0 * k * (k + 1.0) / room
-        } else {
-            f64::INFINITY
-        }
-    }
-}
-
-/// All of them, that of the paper first.
-pub static MODELS: [Model; 9] = [
-    model::<Beckmann, VGroove, 0, 6>("beckmann", "Eq. 14: Beckmann, V-groove masking"),
-    model::<Beckmann, Smith, 0, 6>("beckmann-smith", "Beckmann, Smith masking"),
-    model::<Beckmann, NoMasking, 0, 6>("beckmann-unmasked", "Beckmann, no masking"),
-    model::<Beckmann, VGroove, OWN_SLOPE, 7>("beckmann-own-slope", "Eq. 14, the volume lobe with a slope of its own"),
-    model::<Beckmann, VGroove, SECOND, 8>("beckmann-second", "Eq. 14 with a second surface lobe"),
-    model::<Ggx, VGroove, 0, 6>("ggx", "GGX, V-groove masking"),
-    model::<Ggx, Smith, 0, 6>("ggx-smith", "GGX, Smith masking"),
-    model::<Ggx, VGroove, OWN_SLOPE, 7>("ggx-own-slope", "GGX, the volume lobe with a slope of its own"),
-    model::<Ggx, VGroove, SECOND, 8>("ggx-second", "GGX with a second surface lobe"),
+/// `MODELS[0]` is Eq. 14.
+pub static MODELS: [Model; 11] = [
+    Model {
+        name: "beckmann",
+        what: "Eq. 14: Beckmann, V-groove masking",
+        source: "Bishop, Butler and Marciniak 2021, Eq. 14",
+        parameters: parameters_of::<Microfacet<ALL>, 6, 6>(),
+        terms: ALL,
+        whole: eq_14::<ALL, 6, true>(),
+        sets: &EQ_14,
+    },
+    microfacet::<ALL, Beckmann, Smith, 6, 8>("beckmann-smith", "Beckmann, Smith masking", "Walter et al. 2007"),
+    microfacet::<ALL, Beckmann, NoMasking, 6, 6>("beckmann-unmasked", "Beckmann, no masking", EQ_5),
+    microfacet::<{ ALL | OWN_SLOPE }, Beckmann, VGroove, 7, 6>(
+        "beckmann-own-slope",
+        "Eq. 14, the volume lobe with a slope of its own",
+        EQ_5,
+    ),
+    microfacet::<{ ALL | SECOND }, Beckmann, VGroove, 8, 6>(
+        "beckmann-second",
+        "Eq. 14 with a second surface lobe",
+        EQ_5,
+    ),
+    microfacet::<ALL, Ggx, VGroove, 6, 6>(
+        "ggx",
+        "GGX, V-groove masking",
+        "Trowbridge and Reitz 1975; Walter et al. 2007, Eq. 33",
+    ),
+    microfacet::<ALL, Ggx, Smith, 6, 8>("ggx-smith", "GGX, Smith masking", "Walter et al. 2007, Eq. 33 and 34"),
+    microfacet::<{ ALL | OWN_SLOPE }, Ggx, VGroove, 7, 6>(
+        "ggx-own-slope",
+        "GGX, the volume lobe with a slope of its own",
+        EQ_5,
+    ),
+    microfacet::<{ ALL | SECOND }, Ggx, VGroove, 8, 6>("ggx-second", "GGX with a second surface lobe", EQ_5),
+    microfacet::<{ ALL | TAIL }, HyperCauchy, VGroove, 7, 6>(
+        "hyper-cauchy",
+        "a distribution with a free tail, V-groove masking",
+        "Renhorn and Boreman 2008",
+    ),
+    microfacet::<{ ALL | OWN_SLOPE | TAIL }, HyperCauchy, VGroove, 8, 6>(
+        "hyper-cauchy-own-slope",
+        "a distribution with a free tail, the volume lobe with a slope of its own",
+        "Renhorn and Boreman 2008",
+    ),
 ];
 
-const fn model<D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize>(
+/// A model put together from Eq. 5, of which terms can be left out as of Eq. 14.
+const fn microfacet<const TERMS: u8, D, M, const P: usize, const C: usize>(
     name: &'static str,
     what: &'static str,
-) -> Model {
+    source: &'static str,
+) -> Model
+where
+    D: Distribution + Send + Sync + 'static,
+    M: Masking<D, C> + Send + Sync + 'static,
+{
     Model {
         name,
         what,
-        parameters: P,
-        fit: fit::<D, M, EXTRAS, P>,
-        ln_f: ln_f::<D, M, EXTRAS, P>,
+        source,
+        parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
+        terms: ALL,
+        whole: compile::<Microfacet<TERMS, D, M>, P, C, false>(ALL),
+        sets: &[],
     }
 }
 
-impl Model {
-    /// Searches the model's global optimum within the bounds of Table 1 (those of m and rho hold for every slope and weight).
-    ///
-    /// # Errors
-    /// A sample that is not valid, or fewer samples than parameters.
-    pub fn fit(&self, samples: &[Sample<f64>], seed: u64) -> Result<Fitted, FitError> {
-        (self.fit)(self, samples, seed)
-    }
+const D: u8 = DIFFUSE;
+const S: u8 = SURFACE;
+const V: u8 = VOLUME;
+const A: u8 = ABSORBING;
 
-    /// ln f in the directions of `sample`, f in sr^-1, with the values of [`Fitted::parameters`]; none beyond the horizon.
-    pub fn ln_f(&self, parameters: &[f64], sample: &Sample<f64>) -> Option<f64> {
-        (self.ln_f)(parameters, sample)
-    }
-}
+/// The sets of terms of Eq. 14 that are compiled on their own: what is left out of them costs nothing.
+static EQ_14: [Compiled; 7] = [
+    eq_14::<D, 1, false>(),
+    eq_14::<{ D | S }, 4, false>(),
+    eq_14::<{ D | S | A }, 5, false>(),
+    eq_14::<{ D | S | V }, 5, false>(),
+    eq_14::<S, 3, false>(),
+    eq_14::<{ S | A }, 4, false>(),
+    eq_14::<{ S | V | A }, 5, false>(),
+];
 
-fn facets(samples: &[Sample<f64>]) -> Result<Vec<Facets<f64>>, (usize, SampleError)> {
-    let chunks = samples.chunks(8).enumerate();
-    chunks
-        .map(|(k, chunk)| Facets::new(chunk).map_err(|(place, error)| (8 * k + place, error)))
-        .collect()
-}
-
-fn fit<D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize>(
-    model: &Model,
-    samples: &[Sample<f64>],
-    seed: u64,
-) -> Result<Fitted, FitError> {
-    let count = samples.iter().filter(|sample| sample.weight != 0.0).count();
-    if count < P {
-        return Err(FitError::TooFew(count, P));
-    }
-    let facets = facets(samples).map_err(|(index, error)| FitError::Sample(index, error))?;
-    let scene = Composed::<f64, D, M, EXTRAS, P>::new(&facets);
-    let found = search(&scene, &bounds(EXTRAS), seed, CANDIDATES, &Options::default());
-    let best = found.minima.best().expect("a search makes at least one fit");
-    let value = |index: usize| slot(EXTRAS, index).map(|k| best.x[k]);
-    let named = NAMES.iter().enumerate().filter_map(|(index, &name)| {
-        let value = value(index)?;
-        Some((name, if name == "kappa" { Real::sqrt(value) } else { value }))
-    });
-    Ok(Fitted {
-        model: model.name,
-        samples: count,
-        cost: best.cost,
-        minima: found.minima.as_slice().len(),
-        parameters: named.collect(),
-    })
-}
-
-/// Table 1, in the solver's coordinates.
-fn bounds<const P: usize>(extras: u8) -> Bounds<f64, P> {
-    let mut bounds = Bounds {
-        lower: [0.0; P],
-        upper: [0.0; P],
-    };
-    for (index, name) in NAMES.into_iter().enumerate() {
-        let (lower, upper) = match name {
-            "rho_d" => (0.0, 1.0),
-            "m" | "m_v" | "m_2" => (1e-5, 10.0),
-            "n" => (1.0, 100.0),
-            "kappa" => (0.0, 100.0 * 100.0),
-            _ => (0.0, 100.0),
-        };
-        if let Some(k) = slot(extras, index) {
-            (bounds.lower[k], bounds.upper[k]) = (lower, upper);
-        }
-    }
-    bounds
-}
-
-fn ln_f<D: Distribution, M: Masking<D>, const EXTRAS: u8, const P: usize>(
-    parameters: &[f64],
-    sample: &Sample<f64>,
-) -> Option<f64> {
-    let sample = Sample {
-        brdf: 1.0,
-        weight: 1.0,
-        ..*sample
-    };
-    let facets = [Facets::new(&[sample]).ok()?];
-    let mut x: [f64; P] = parameters.try_into().ok()?;
-    x[5] *= x[5];
-    let mut value = None;
-    Composed::<f64, D, M, EXTRAS, P>::new(&facets).each(&x, |ln_f, _| value = Some(ln_f));
-    value
+const fn eq_14<const TERMS: u8, const P: usize, const WIDE: bool>() -> Compiled {
+    compile::<Microfacet<TERMS>, P, 6, WIDE>(TERMS)
 }

@@ -1,9 +1,10 @@
 //! What to fit, and how.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
+use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::search::{CANDIDATES, PAPER_STARTS};
 
 use crate::simd::Simd;
+use crate::{Model, Values};
 
 /// How the global optimum is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,14 +33,16 @@ pub struct FitOptions {
     pub seed: u64,
     /// Number of starts (`paper`) or candidates (`default`); `None` for the method's own.
     pub starts: Option<u32>,
-    /// One of [`TERM_SETS`].
+    /// The model.
+    pub model: &'static Model,
+    /// The terms of it that the scene needs, one of [`TERM_SETS`]; others are left out. Without meaning for a model that has none.
     pub terms: u8,
     /// Let the scan choose among the sets of the program's `choose` in place of `terms`; [`crate::fit`] does not look at it.
     pub choose_terms: bool,
-    /// Least parameters; Table 1 by default.
-    pub lower: Params<f64>,
-    /// Largest parameters.
-    pub upper: Params<f64>,
+    /// Least values of the model's parameters; those of its description by default, for Eq. 14 Table 1.
+    pub lower: Values,
+    /// Largest values.
+    pub upper: Values,
     /// The number type.
     pub precision: Precision,
     /// Leave out samples far from the fit ([`crate::robust`]).
@@ -48,44 +51,40 @@ pub struct FitOptions {
     pub simd: Simd,
 }
 
-impl PartialEq for Simd {
-    fn eq(&self, other: &Self) -> bool {
-        self.name() == other.name()
+impl Default for FitOptions {
+    fn default() -> Self {
+        FitOptions::of(Model::paper())
     }
 }
 
-impl Default for FitOptions {
-    fn default() -> Self {
+impl FitOptions {
+    /// To fit `model` within the bounds of its description, whole.
+    pub fn of(model: &'static Model) -> Self {
         FitOptions {
             method: Method::Default,
             seed: 0,
             starts: None,
+            model,
             terms: ALL,
             choose_terms: false,
-            lower: Params {
-                rho_d: 0.0,
-                rho_s: 0.0,
-                rho_v: 0.0,
-                m: 1e-5,
-                n: 1.0,
-                kappa: 0.0,
-            },
-            upper: Params {
-                rho_d: 1.0,
-                rho_s: 100.0,
-                rho_v: 100.0,
-                m: 10.0,
-                n: 100.0,
-                kappa: 100.0,
-            },
+            lower: model.lower(),
+            upper: model.upper(),
             precision: Precision::F64,
             robust: false,
             simd: Simd::best(),
         }
     }
-}
 
-impl FitOptions {
+    /// Places of the parameters that are part of the terms.
+    pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.model.parameters.len()).filter(|&place| !self.model.left_out(self.terms, place))
+    }
+
+    /// Those of them that equal bounds do not hold.
+    pub fn free(&self) -> impl Iterator<Item = usize> + '_ {
+        self.present().filter(|&place| self.lower[place] < self.upper[place])
+    }
+
     /// The number of starts or candidates that will be used.
     pub fn starts(&self) -> u32 {
         self.starts.unwrap_or(match self.method {

@@ -1,12 +1,12 @@
 //! What a fit gives, or why there is none.
 
-use brdfit_core::brdf::{ALL, Brdf, Params};
-use brdfit_core::geometry::{Geometry, SampleError};
+use brdfit_core::geometry::SampleError;
 use brdfit_core::lm::Stop;
 use brdfit_core::search::Evaluations;
 
 use crate::robust::Robust;
 use crate::uncertainty::Uncertainty;
+use crate::{Model, Values};
 
 /// One distinct minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Minimum {
     /// Sum of squared ln residuals over samples squared (Eq. 17).
     pub mse2: f64,
     /// Its parameters.
-    pub params: Params<f64>,
+    pub params: Values,
     /// How many fits ended here.
     pub hits: u32,
     /// The least index of a start that led here.
@@ -24,6 +24,10 @@ pub struct Minimum {
 /// The result of a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
+    /// The model.
+    pub model: &'static Model,
+    /// Its terms that were fitted.
+    pub terms: u8,
     /// Number of samples.
     pub samples: usize,
     /// Sum of squared residuals of ln f.
@@ -33,7 +37,7 @@ pub struct Outcome {
     /// Root of the mean squared residual of ln f.
     pub rms_ln: f64,
     /// The best parameters.
-    pub params: Params<f64>,
+    pub params: Values,
     /// Names of the parameters that ended on a bound.
     pub at_bound: Vec<&'static str>,
     /// How the best fit ended.
@@ -61,6 +65,18 @@ pub enum FitError {
     Terms(u8),
 }
 
+impl Outcome {
+    /// Places of the parameters that are part of the terms.
+    pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.params.len()).filter(|&place| !self.model.left_out(self.terms, place))
+    }
+
+    /// The value of the parameter of this name, if the model has it.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.model.value(&self.params, name)
+    }
+}
+
 impl std::fmt::Display for FitError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -73,10 +89,3 @@ impl std::fmt::Display for FitError {
     }
 }
 impl std::error::Error for FitError {}
-
-/// ln f of the model with any set of terms, f in sr^-1; `params` are as a fit reports them, with 0 for what is absent.
-pub fn ln_f(params: &Params<f64>, geometry: &Geometry<f64>) -> f64 {
-    // Without lobes m is reported as 0, by which the model would divide.
-    let m = if params.m > 0.0 { params.m } else { 1.0 };
-    Brdf::<f64, ALL>::new(&Params { m, ..*params }).ln_f(geometry)
-}

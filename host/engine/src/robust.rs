@@ -1,9 +1,9 @@
 //! A fit that outliers do not draw: they are found by repeated searches with Cauchy's weights, and left out of the last ones.
 
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-use crate::{FitError, FitOptions, Outcome, ln_f};
+use crate::{FitError, FitOptions, Outcome};
 
 /// Residuals beyond this many scales are outliers.
 const OUTLIER: f64 = 6.0;
@@ -78,11 +78,9 @@ pub fn fit(
 
 /// Model less measurement in ln f, times the sample's weight.
 fn residual(outcome: &Outcome, sample: &Sample<f64>) -> f64 {
-    let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi);
-    // A sample that was fitted has a geometry.
-    geometry.map_or(0.0, |geometry| {
-        sample.weight * (ln_f(&outcome.params, &geometry) - Real::ln(sample.brdf))
-    })
+    // A sample that was fitted is above the horizon.
+    let ln_f = outcome.model.ln_f(&outcome.params, sample);
+    ln_f.map_or(0.0, |ln_f| sample.weight * (ln_f - Real::ln(sample.brdf)))
 }
 
 /// The median of the sizes as a standard deviation; above 0.

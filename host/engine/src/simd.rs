@@ -1,9 +1,9 @@
 //! Runs the passes over a scan on the widest vectors that the processor has; the bits do not depend on it.
 
-use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{Bounds, Linearization, Problem};
+use brdfit_core::model::Model;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
+use brdfit_core::residuals::Residuals;
 use brdfit_core::search::{Candidate, Scene};
 use pulp::NullaryFnOnce;
 
@@ -50,17 +50,25 @@ impl Simd {
     }
 }
 
-/// A scan whose passes use `simd`.
-#[derive(Clone, Copy, Debug)]
-pub struct FastScan<'a, R, const TERMS: u8, const P: usize> {
+impl PartialEq for Simd {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+/// A scan whose passes use `simd`; in single precision without `WIDE` those of every processor.
+///
+/// Wide vectors of single precision for every model would double the time to compile this crate, and instruments that fit in single precision run their own build.
+#[derive(Debug)]
+pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const WIDE: bool = true> {
     /// The observations.
-    pub scan: Scan<'a, R, TERMS, P>,
+    pub scan: Residuals<'a, R, M, P, C>,
     /// The instructions.
     pub simd: Simd,
 }
 
-struct Cost<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TERMS, P> {
+struct Cost<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Cost<'_, R, M, P, C> {
     type Output = R;
     #[inline(always)]
     fn call(self) -> R {
@@ -68,8 +76,8 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Cost<'_, R, TER
     }
 }
 
-struct Linearize<'a, R, const TERMS: u8, const P: usize>(&'a Scan<'a, R, TERMS, P>, &'a [R; P]);
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R, TERMS, P> {
+struct Linearize<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Linearize<'_, R, M, P, C> {
     type Output = Linearization<R, P>;
     #[inline(always)]
     fn call(self) -> Linearization<R, P> {
@@ -77,14 +85,14 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Linearize<'_, R
     }
 }
 
-struct Propose<'a, R, const TERMS: u8, const P: usize>(
-    &'a Scan<'a, R, TERMS, P>,
+struct Propose<'a, R, M, const P: usize, const C: usize>(
+    &'a Residuals<'a, R, M, P, C>,
     &'a Bounds<R, P>,
     u64,
     u64,
     Option<&'a [R; P]>,
 );
-impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Propose<'_, R, M, P, C> {
     type Output = Candidate<R, P>;
     #[inline(always)]
     fn call(self) -> Candidate<R, P> {
@@ -92,23 +100,24 @@ impl<R: Real, const TERMS: u8, const P: usize> NullaryFnOnce for Propose<'_, R, 
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> FastScan<'_, R, TERMS, P> {
-    /// Single precision has wide vectors with all terms only: they would double the time to compile this crate, and instruments that fit in single precision run their own build.
-    const WIDE: bool = TERMS == ALL || size_of::<R>() == size_of::<f64>();
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> FastScan<'_, R, M, P, C, WIDE> {
+    const VECTORS: bool = WIDE || size_of::<R>() == size_of::<f64>();
 
     #[inline(always)]
     fn run<F: NullaryFnOnce>(&self, pass: F) -> F::Output {
         match self.simd {
             #[cfg(target_arch = "x86_64")]
-            Simd::V3(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            Simd::V3(simd) if const { Self::VECTORS } => simd.vectorize(pass),
             #[cfg(target_arch = "x86_64")]
-            Simd::V4(simd) if const { Self::WIDE } => simd.vectorize(pass),
+            Simd::V4(simd) if const { Self::VECTORS } => simd.vectorize(pass),
             _ => pass.call(),
         }
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> Problem<R, P>
+    for FastScan<'_, R, M, P, C, WIDE>
+{
     fn cost(&self, x: &[R; P]) -> R {
         self.run(Cost(&self.scan, x))
     }
@@ -120,7 +129,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Problem<R, P> for FastScan<'_, R,
     }
 }
 
-impl<R: Real, const TERMS: u8, const P: usize> Scene<R, P> for FastScan<'_, R, TERMS, P> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> Scene<R, P>
+    for FastScan<'_, R, M, P, C, WIDE>
+{
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.run(Propose(&self.scan, bounds, seed, i, like))
     }

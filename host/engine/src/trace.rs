@@ -1,19 +1,17 @@
 //! One search with a clock beside it: what it had found, when, and after how many passes.
 
 use std::cell::RefCell;
-use std::marker::PhantomData;
 use std::time::Instant;
 
-use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
+use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, Candidate, Evaluations, Scene};
 
-use crate::search::{WithTerms, with_terms};
-use crate::simd::FastScan;
-use crate::{FitError, FitOptions, Method, Precision, blocks};
+use crate::compiled::Kernel;
+use crate::layout::Layout;
+use crate::{FitError, FitOptions, Method, Values};
 
 /// An improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +21,7 @@ pub struct Record {
     /// Wall time until here, s.
     pub elapsed_s: f64,
     /// Where the cost is least so far.
-    pub params: Params<f64>,
+    pub params: Values,
     /// Sum of squared residuals of ln f there, computed in `f64` whatever the number type of the search.
     pub cost: f64,
 }
@@ -51,37 +49,23 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// # Errors
 /// [`FitError`].
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
-    match options.precision {
-        Precision::F64 => with_terms(options.terms, Watch::<f64>(samples, options, PhantomData))?,
-        Precision::F32 => with_terms(options.terms, Watch::<f32>(samples, options, PhantomData))?,
-    }
+    let (compiled, options) = options.model.compiled(options)?;
+    (compiled.trace)(samples, &options)
 }
 
-struct Watch<'a, R>(&'a [Sample<f64>], &'a FitOptions, PhantomData<R>);
-impl<R: Real> WithTerms for Watch<'_, R> {
-    type Output = Result<Trace, FitError>;
-    fn run<const TERMS: u8, const P: usize>(self) -> Self::Output {
-        watch::<R, TERMS, P>(self.0, self.1)
-    }
-}
-
-fn watch<R: Real, const TERMS: u8, const P: usize>(
-    samples: &[Sample<f64>],
+/// The search of one scan, watched; `exact` is the same scan in `f64`.
+pub(crate) fn watch<R: Real, const P: usize>(
+    scene: &Kernel<R, P>,
+    exact: &Kernel<f64, P>,
+    own: &[Parameter; P],
     options: &FitOptions,
-) -> Result<Trace, FitError> {
-    if samples.len() < P {
-        return Err(FitError::TooFew(samples.len(), P));
-    }
-    let blocks = blocks::<R>(samples)?;
-    let to_real = |p: &Params<f64>| Params::from_array(p.to_array().map(R::of));
-    let bounds = Scan::<R, TERMS, P>::bounds(&to_real(&options.lower), &to_real(&options.upper));
+) -> Trace {
+    let layout = Layout::new(own, options.model);
+    let bounds: Bounds<R, P> = layout.bounds(options);
     let (lm, starts) = (Options::default(), options.starts());
     let begun = Instant::now();
     let watched = Watched {
-        scene: FastScan {
-            scan: Scan::<R, TERMS, P>::new(&blocks),
-            simd: options.simd,
-        },
+        scene,
         begun,
         seen: RefCell::new(Seen {
             evaluations: Evaluations::default(),
@@ -100,26 +84,20 @@ fn watch<R: Real, const TERMS: u8, const P: usize>(
     }
     let elapsed_s = begun.elapsed().as_secs_f64();
     let seen = watched.seen.into_inner();
-
-    let blocks = crate::blocks::<f64>(samples)?;
-    let exact = FastScan {
-        scan: Scan::<f64, TERMS, P>::new(&blocks),
-        simd: options.simd,
-    };
     let record = |&(evaluations, elapsed_s, x): &(Evaluations, f64, [R; P])| {
         let x = x.map(R::f64);
         Record {
             evaluations,
             elapsed_s,
-            params: Scan::<f64, TERMS, P>::params(&x),
+            params: layout.values(&x),
             cost: exact.cost(&x),
         }
     };
-    Ok(Trace {
+    Trace {
         records: seen.steps.iter().map(record).collect(),
         evaluations: seen.evaluations,
         elapsed_s,
-    })
+    }
 }
 
 struct Seen<R, const P: usize> {
@@ -129,13 +107,13 @@ struct Seen<R, const P: usize> {
 }
 
 /// A scene that notes each new least cost.
-struct Watched<S, R, const P: usize> {
-    scene: S,
+struct Watched<'a, R, const P: usize> {
+    scene: &'a Kernel<'a, R, P>,
     begun: Instant,
     seen: RefCell<Seen<R, P>>,
 }
 
-impl<S, R: Real, const P: usize> Watched<S, R, P> {
+impl<R: Real, const P: usize> Watched<'_, R, P> {
     fn note(&self, x: &[R; P], cost: R, linearize: u32) {
         let mut seen = self.seen.borrow_mut();
         seen.evaluations.linearize += linearize;
@@ -148,7 +126,7 @@ impl<S, R: Real, const P: usize> Watched<S, R, P> {
     }
 }
 
-impl<S: Problem<R, P>, R: Real, const P: usize> Problem<R, P> for Watched<S, R, P> {
+impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
     fn cost(&self, x: &[R; P]) -> R {
         let cost = self.scene.cost(x);
         self.note(x, cost, 0);
@@ -164,7 +142,7 @@ impl<S: Problem<R, P>, R: Real, const P: usize> Problem<R, P> for Watched<S, R, 
     }
 }
 
-impl<S: Scene<R, P>, R: Real, const P: usize> Scene<R, P> for Watched<S, R, P> {
+impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.seen.borrow_mut().evaluations.cost += 1;
         self.scene.candidate(bounds, seed, i, like)

@@ -7,7 +7,7 @@ mod settings;
 
 use brdfit::engine::{self, FitError, FitOptions, Method, Outcome};
 use brdfit::input::azimuth;
-use brdfit::options;
+use brdfit::parameters::check;
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Geometry;
 use brdfit_core::lm::Stop;
@@ -196,7 +196,7 @@ fn brdf<'py>(
             return Ok(f64::NAN);
         }
         for (k, value) in x.into_iter().enumerate() {
-            options::check(k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
+            check(k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
         }
         let ln_f = engine::ln_f(&Params::from_array(x), &geometry);
         // Below this the exponential is no normal number.

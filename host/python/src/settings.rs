@@ -1,7 +1,8 @@
 //! What the keyword arguments mean to the engine.
 
 use brdfit::engine::{FitOptions, Method, TERM_SETS};
-use brdfit::options::{self, Range};
+use brdfit::parameters::{Range, apply, check, domain};
+use brdfit::terms;
 use brdfit_core::brdf::NAMES;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -38,18 +39,15 @@ impl Settings {
             ..FitOptions::default()
         };
         let ranges: Vec<Range> = self.bounds.iter().map(range).collect::<PyResult<_>>()?;
-        options::apply(&ranges, options.terms, &mut options.lower, &mut options.upper)
+        apply(&ranges, options.terms, &mut options.lower, &mut options.upper)
             .map_err(|error| refuse(&error.what, "leave it out of bounds, or take more terms"))?;
         Ok(options)
     }
 }
 
 fn terms(names: &[String]) -> PyResult<u8> {
-    options::terms(&names.join(",")).map_err(|error| {
-        let sets: Vec<String> = TERM_SETS
-            .iter()
-            .map(|&set| options::term_names(set).join(","))
-            .collect();
+    terms::terms(&names.join(",")).map_err(|error| {
+        let sets: Vec<String> = TERM_SETS.iter().map(|&set| terms::term_names(set).join(",")).collect();
         refuse(&error.what, &format!("terms is one of: {}", sets.join(" | ")))
     })
 }
@@ -62,9 +60,9 @@ fn range((name, lower, upper): &(String, f64, f64)) -> PyResult<Range> {
     })?;
     let (lower, upper) = (*lower, *upper);
     for value in [lower, upper] {
-        let (least, largest) = options::domain(index);
+        let (least, largest) = domain(index);
         let help = format!("bounds take numbers from {least} to {largest}");
-        options::check(index, value).map_err(|error| refuse(&error.what, &help))?;
+        check(index, value).map_err(|error| refuse(&error.what, &help))?;
     }
     if lower > upper {
         let help = format!("write \"{name}\": ({upper}, {lower})");

@@ -6,7 +6,7 @@ use brdfit_core::brdf::NAMES;
 use brdfit_core::real::Real;
 use serde_json::{Value, json};
 
-use super::model::Model;
+use super::model::{Model, word};
 
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
@@ -44,7 +44,7 @@ pub fn write(model: &Model) -> String {
     let file = json!({
         "metadata": {
             "schema": SCHEMA,
-            "id": format!("urn:brdfit:{}", super::word(&model.name)),
+            "id": format!("urn:brdfit:{}", word(&model.name)),
             "type": "BRDF",
             "timestamp": now(),
             "provenance": { "organization": "NA" },

@@ -2,8 +2,7 @@
 
 use brdfit_core::brdf::NAMES;
 
-use super::model::Model;
-use super::word;
+use super::model::{Model, word};
 
 /// A number that both languages take for an f64, with all its digits.
 fn literal(x: f64) -> String {

@@ -2,8 +2,7 @@
 
 use brdfit_core::brdf::NAMES;
 
-use super::model::Model;
-use super::word;
+use super::model::{Model, word};
 
 /// The class; a lobe is sampled by its facets, and the lobes that are there equally often.
 const CLASS: &str = r#"

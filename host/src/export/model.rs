@@ -1,5 +1,7 @@
 //! The model that is exported, from a result or from parameters.
 
+use std::path::Path;
+
 use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
@@ -7,7 +9,7 @@ use serde_json::Value;
 
 use crate::engine::ln_f;
 use crate::error::Error;
-use crate::options;
+use crate::parameters::check;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,18 +25,14 @@ pub struct Model {
 }
 
 impl Model {
-    /// From a list such as `rho_d=0.1,rho_s=10,...`.
-    ///
-    /// # Errors
-    /// A parameter is missing, named twice, or out of range.
-    pub fn of_params(list: &str) -> Result<Model, Error> {
-        let params = options::all_parameters(list, "--params")?;
-        Ok(Model {
+    /// From parameters alone.
+    pub fn of_params(params: Params<f64>) -> Model {
+        Model {
             name: "material".into(),
             params,
             stderr: [None; 6],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
-        })
+        }
     }
 
     /// From a result of `brdfit fit --format json`, of which `index` (from 1) chooses one if there are several.
@@ -72,7 +70,7 @@ impl Model {
             values[place] = value.ok_or_else(|| none(&format!("there is no parameters.{name}")))?;
         }
         for (place, &value) in values.iter().enumerate() {
-            options::check(place, value)?;
+            check(place, value)?;
         }
         let text = |key: &str| result[key].as_str();
         let file = text("file").unwrap_or("material");
@@ -93,5 +91,27 @@ impl Model {
     /// f in sr^-1; angles in radians, 0 beyond the horizon.
     pub fn f(&self, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         Geometry::new(theta_i, theta_s, delta_phi).map_or(0.0, |geometry| Real::exp(ln_f(&self.params, &geometry)))
+    }
+}
+
+/// The model's name as a word of a program: letters, digits and underscores.
+pub(super) fn word(name: &str) -> String {
+    let stem = Path::new(name)
+        .file_stem()
+        .map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    let word: String = stem
+        .chars()
+        .map(|c| {
+            if c.is_ascii_alphanumeric() {
+                c.to_ascii_lowercase()
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    if word.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        word
+    } else {
+        format!("brdf_{word}")
     }
 }

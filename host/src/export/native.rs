@@ -4,8 +4,7 @@ use brdfit_core::brdf::fresnel;
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
 
-use super::model::Model;
-use super::word;
+use super::model::{Model, word};
 
 /// Pairs of directions that are compared, up to 85 degrees from the normal.
 const DIRECTIONS: u32 = 1000;

@@ -4,7 +4,7 @@ use brdfit_core::real::Real;
 use libm::{atan2, hypot};
 
 use super::model::Model;
-use crate::reflectance::reflectance;
+use crate::analysis::reflectance::reflectance;
 
 /// Angles of incidence in degrees.
 const INCIDENCES: [f64; 18] = [

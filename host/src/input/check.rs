@@ -4,8 +4,9 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::Measurement;
+use super::format::Format;
 use super::left_out::{Counts, Reason};
-use super::options::{Format, ReadAs, ReadOptions, Weights};
+use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
 use super::units::{Angles, Forward, Quantity};
 use super::weight;

@@ -1,53 +1,72 @@
-//! How the format of a file is known by its content, and which reader reads it.
+//! A format of files: its names, how it is known, and what reads it.
 
-use super::options::{Format, ReadOptions};
+use std::fmt;
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+use serde::{Serialize, Serializer};
+
+use super::formats;
+use super::options::ReadOptions;
 use super::raw::RawScan;
-use super::{astm, bird, bytes, fred, lumos, matrix, merl, table, zemax};
 use crate::error::Error;
 
-/// The scans in a file, as they stand there, and its format.
-///
-/// # Errors
-/// The format is not known, or the file breaks its rules.
-pub fn scans(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
-    let binary = merl::is(file) && options.input_format.is_none();
-    if binary || options.input_format == Some(Format::Merl) {
-        return Ok((Format::Merl, merl::read(file, options)?));
-    }
-    let text = bytes::text(file)?;
-    let format = options.input_format.unwrap_or_else(|| detect(text));
-    let mut scans = match format {
-        Format::Table | Format::Merl => table::read(text, options)?,
-        Format::Matrix => matrix::read(text)?,
-        Format::Astm => astm::read(text)?,
-        Format::Bird => bird::read(text)?,
-        Format::Zemax => zemax::read(text)?,
-        Format::Fred => fred::read(text)?,
-        Format::Lumos => lumos::read(text)?,
-    };
-    if let Some(thin) = options.thin {
-        for scan in &mut scans {
-            scan.rows = scan.rows.iter().step_by(thin as usize).copied().collect();
-        }
-    }
-    Ok((format, scans))
+/// A format of files with scans; two are equal if their names are.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// Its name as an option.
+    pub name: &'static str,
+    /// What people call it.
+    pub title: &'static str,
+    /// What it is, for the help of the option.
+    pub about: &'static str,
+    /// How it is known and read.
+    pub reader: Reader,
 }
 
-/// The format of a text; a table if it is none of the others.
-fn detect(text: &str) -> Format {
-    if bird::is(text) {
-        Format::Bird
-    } else if astm::is(text) {
-        Format::Astm
-    } else if fred::is(text) {
-        Format::Fred
-    } else if lumos::is(text) {
-        Format::Lumos
-    } else if zemax::is(text) {
-        Format::Zemax
-    } else if matrix::is(text) {
-        Format::Matrix
-    } else {
-        Format::Table
+/// How files of a format are known and read.
+#[derive(Clone, Copy)]
+pub enum Reader {
+    /// From the bytes as they are.
+    Bytes {
+        /// True if they begin as files of this format do.
+        is: fn(&[u8]) -> bool,
+        /// The scans as they stand in the file.
+        read: fn(&[u8], &ReadOptions) -> Result<Vec<RawScan>, Error>,
+    },
+    /// From text, whatever its encoding was.
+    Text {
+        /// True if the text is of this format.
+        is: fn(&str) -> bool,
+        /// The scans as they stand in the file.
+        read: fn(&str, &ReadOptions) -> Result<Vec<RawScan>, Error>,
+    },
+}
+
+impl PartialEq for Format {
+    fn eq(&self, other: &Format) -> bool {
+        self.name == other.name
+    }
+}
+
+impl fmt::Debug for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Serialize for Format {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
+    }
+}
+
+impl ValueEnum for Format {
+    fn value_variants<'a>() -> &'a [Format] {
+        &formats::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name).help(self.about))
     }
 }

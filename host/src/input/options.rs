@@ -5,45 +5,8 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::format::Format;
 use super::units::{Angles, Forward, Quantity};
-
-/// A format of files with scans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// Named columns: CSV, TSV, semicolons or spaces
-    Table,
-    /// Angles of incidence in the first row, scattering angles in the first column
-    Matrix,
-    /// ASTM E1392 or E2387 text
-    Astm,
-    /// EURAMET BiRD universal BRDF JSON
-    Bird,
-    /// Zemax tabular BSDF
-    Zemax,
-    /// FRED text
-    Fred,
-    /// LUMOS or ScatterWorks text
-    Lumos,
-    /// MERL binary
-    Merl,
-}
-
-impl Format {
-    /// What people call it.
-    pub fn title(self) -> &'static str {
-        match self {
-            Format::Table => "table with named columns",
-            Format::Matrix => "matrix",
-            Format::Astm => "ASTM E1392",
-            Format::Bird => "BiRD JSON",
-            Format::Zemax => "Zemax tabular BSDF",
-            Format::Fred => "FRED text",
-            Format::Lumos => "LUMOS text",
-            Format::Merl => "MERL binary",
-        }
-    }
-}
 
 /// How files are read; all but `input_format` hold for each scan.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -138,7 +101,7 @@ impl fmt::Display for ReadAs {
             },
             if self.weighted { ", weighted" } else { "" },
         );
-        let (format, quantity) = (self.format.title(), self.quantity.title());
+        let (format, quantity) = (self.format.title, self.quantity.title());
         write!(
             f,
             "{format}: {quantity} over {angles}, specular peak at theta_s = {sign}theta_i{weights}"

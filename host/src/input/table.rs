@@ -1,16 +1,25 @@
 //! Tables with named columns.
 
 use super::columns::{self, Columns, Value, WeightKind};
+use super::format::{Format, Reader};
 use super::options::ReadOptions;
 use super::raw::{Places, RawScan, Row, Weight};
 use super::rows::{self, number};
 use crate::error::Error;
 
+/// This format, which is what no other is.
+pub const FORMAT: Format = Format {
+    name: "table",
+    title: "table with named columns",
+    about: "Named columns: CSV, TSV, semicolons or spaces",
+    reader: Reader::Text { is: |_| true, read },
+};
+
 /// The scans in a table: one for each column of values, and for each wavelength if the rows have one.
 ///
 /// # Errors
 /// There is no header, no row, or a cell that is no number.
-pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut columns: Option<Columns> = None;
     let mut wavelengths: Vec<String> = Vec::new();
     let mut scans: Vec<RawScan> = Vec::new();

@@ -5,13 +5,14 @@ use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::section::Section;
-use crate::engine::Precision;
+use crate::analysis::derived::Value;
+use crate::analysis::undetermined::undetermined;
 use crate::input::left_out;
-use crate::options::term_names;
+use crate::names;
+use crate::number::{digits, percent, short};
 use crate::output::shortest;
-use crate::report::{digits, method_name, stop_meaning};
-use crate::uncertainty::text::{short, shown};
-use crate::uncertainty::words::{percent, undetermined};
+use crate::result::words::{self, shown};
+use crate::terms::term_names;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -112,13 +113,13 @@ fn summary(section: &Section) -> Markup {
             li {
                 "The best fit leaves an rms residual of ln " i { "f" } " of " b { (percent(outcome.rms_ln)) }
                 " over " (outcome.samples) " samples at " (report.angles.len())
-                @if report.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (stop_meaning(outcome.stop)) "."
+                @if report.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (names::stop_meaning(outcome.stop)) "."
                 @if let Some(chi2) = report.chi2 {
                     " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
                 }
             }
             @for open in undetermined(&outcome.params, known, &report.derived) {
-                li.flag { @if !open.through.is_empty() { "The scan tells of " } (open.sentence()) "." }
+                li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
             @if report.derived.iter().any(|at| at.reflectance.value > 1.0) {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
@@ -248,7 +249,7 @@ fn angles(section: &Section) -> Markup {
                     td { (at.rho_v_f.map_or_else(|| "–".into(), with_error)) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
-                    td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(crate::derived::Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
+                    td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
                     td { (with_error(at.reflectance)) @if at.reflectance.value > 1.0 { " (above 1)" } }
                 } }
             }
@@ -259,10 +260,7 @@ fn angles(section: &Section) -> Markup {
 /// What it takes to make this again.
 fn provenance(section: &Section, command: &str) -> Markup {
     let (report, options) = (&section.report, &section.report.options);
-    let precision = match options.precision {
-        Precision::F64 => "f64",
-        Precision::F32 => "f32",
-    };
+    let precision = names::precision(options.precision);
     html! {
         table.provenance {
             caption { "Provenance. The command gives this page again, to the byte." }
@@ -273,7 +271,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
                 tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
-                tr { th.text { "search" } td.text { (method_name(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
+                tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
                 tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } }
                 tr { th.text { "passes" } td.text { (report.outcome.evaluations.linearize) " with derivatives, " (report.outcome.evaluations.cost) " without" } }
             }

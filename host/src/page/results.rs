@@ -6,7 +6,7 @@ use brdfit_core::brdf::{NAMES, Params};
 use serde::Deserialize;
 
 use crate::error::Error;
-use crate::report::json::JsonParameters;
+use crate::result::json::JsonParameters;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,14 +4,13 @@ use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 
 use super::provenance::Source;
-use crate::derived::{self, Value};
+use crate::analysis::derived::{self, Value};
+use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
 use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
 use crate::error::Error;
-use crate::fit::fit;
 use crate::input::{self, Measurement};
 use crate::plot;
-use crate::report::Report;
 
 /// The albedo is drawn up to this angle of incidence, degrees, in steps of two.
 const STEEPEST: u32 = 88;
@@ -23,7 +22,7 @@ pub struct Section {
     /// Its file.
     pub source: Source,
     /// The fit.
-    pub report: Report,
+    pub report: FittedScan,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
     pub survey: Outcome,
     /// The number of its starts.
@@ -82,7 +81,7 @@ impl Section {
     }
 }
 
-fn figures(samples: &[Sample<f64>], report: &Report, minima: &[Minimum], starts: u32) -> Vec<Figure> {
+fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
     let outcome = &report.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let others = minima.iter().filter(other).map(|minimum| minimum.params);

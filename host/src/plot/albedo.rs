@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
-use super::{frame, svg};
-use crate::derived::Value;
+use super::frame::frame;
+use super::svg;
+use crate::analysis::derived::Value;
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;

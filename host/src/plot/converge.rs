@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
+use super::frame::frame;
+use super::svg;
 use super::svg::log10;
-use super::{frame, svg};
-use crate::converge::study::{Band, MethodStudy, Point, ScanStudy};
+use crate::analysis::converge::{Band, MethodStudy, Point, ScanStudy};
 
 /// Least excess that is drawn; less is drawn here.
 const FLOOR: f64 = 1e-10;

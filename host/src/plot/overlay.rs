@@ -3,7 +3,9 @@
 use brdfit_core::geometry::Sample;
 
 use super::curve::LnF;
-use super::{LEFT, Line, TRUE_TO, draw, svg};
+use super::frame::LEFT;
+use super::panels::{Line, TRUE_TO, draw};
+use super::svg;
 
 /// A model's line, and what it is called.
 pub struct Overlay<'a> {

@@ -8,9 +8,10 @@ use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 
 use super::axis::plain;
+use super::frame::{POINTS, degrees};
 use super::residuals::{by_angle, signed_theta_s};
+use super::svg;
 use super::svg::log10;
-use super::{POINTS, degrees, svg};
 use crate::engine::ln_f;
 
 /// Okabe and Ito's colours, which the colour-blind tell apart too.

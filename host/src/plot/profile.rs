@@ -3,9 +3,11 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
+use super::frame::frame;
+use super::svg;
 use super::svg::log10;
-use super::{frame, svg};
-use crate::profile::{LEVELS, Profile, name, threshold};
+use crate::analysis::profile::calibrate::{LEVELS, threshold};
+use crate::analysis::profile::{Profile, name};
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;

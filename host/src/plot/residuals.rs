@@ -7,7 +7,8 @@ use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 
 use super::axis::Axis;
-use super::{BOTTOM, CAPTION, GAP, LEFT, PANELS, POINTS, RIGHT, WIDTH, degrees, frame, svg};
+use super::frame::{BOTTOM, CAPTION, GAP, LEFT, PANELS, POINTS, RIGHT, WIDTH, degrees, frame};
+use super::svg;
 use crate::engine::ln_f;
 
 const TOP: f64 = 10.0;

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use super::axis::Axis;
+use super::frame::frame;
+use super::svg;
 use super::svg::log10;
-use super::{frame, svg};
 use crate::engine::Minimum;
 
 /// Sizes in pixels.

@@ -1,0 +1,166 @@
+//! Microfacet models as [`Model`]s: Eq. 14 with what a scene needs, and the same with other pieces of Eq. 5.
+
+use core::marker::PhantomData;
+
+use crate::bend::{bend, peak};
+use crate::brdf::{Brdf, EVERY, Lift, PAIR, SECOND, WEIGHT, has, lobes, slot};
+use crate::geometry::{Block, LANES, SampleError};
+use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
+use crate::model::{GROUP, Model, Parameter, Role, Rows, Seen, WEIGHTS};
+use crate::pack::Pack;
+use crate::real::Real;
+
+/// A microfacet model of some terms (`brdf::ALL` is Eq. 14), of distribution `D` and masking `M`.
+#[derive(Clone, Copy, Debug)]
+pub struct Microfacet<const TERMS: u8, D = Beckmann, M = VGroove>(PhantomData<(D, M)>);
+
+/// Every parameter that a microfacet model can have, with the bounds of Table 1.
+pub const PARAMETERS: [Parameter; EVERY] = [
+    Parameter::new("rho_d", "ρ_d", Role::Weight, 1.0).what("diffuse reflectance"),
+    Parameter::new("rho_s", "ρ_s", Role::Weight, 100.0).what("weight of the surface lobe"),
+    Parameter::new("rho_v", "ρ_v", Role::Weight, 100.0).what("weight of the volume lobe"),
+    SLOPE_OF_FACETS,
+    Parameter::new("n", "n", Role::Index, 100.0)
+        .what("real part of the index of refraction")
+        .bounds(1.0, 100.0)
+        .domain(1.0, crate::model::LARGEST)
+        .spread(1.0, 10.0),
+    Parameter::new("kappa", "κ", Role::Absorption, 100.0)
+        .what("imaginary part of the index of refraction")
+        .spread(1e-3, 100.0),
+    Parameter {
+        name: "m_v",
+        symbol: "m_v",
+        what: "slope of the volume lobe's facets",
+        ..SLOPE_OF_FACETS
+    },
+    Parameter::new("rho_2", "ρ_2", Role::Weight, 100.0).what("weight of the second surface lobe"),
+    Parameter {
+        name: "m_2",
+        symbol: "m_2",
+        what: "slope of the second surface lobe's facets",
+        ..SLOPE_OF_FACETS
+    },
+    Parameter::new("q", "q", Role::Shape, 50.0)
+        .what("exponent of the distribution's tail")
+        .bounds(1.01, 50.0)
+        .domain(1.001, 1000.0)
+        .spread(1.1, 10.0),
+];
+
+const SLOPE_OF_FACETS: Parameter = Parameter::new("m", "m", Role::Slope, 10.0)
+    .what("slope of the facets")
+    .bounds(1e-5, 10.0)
+    .domain(1e-6, crate::model::LARGEST)
+    .spread(0.0, 3.0);
+
+/// The parameters of some terms, in their order.
+const fn parameters_of<const P: usize>(terms: u8) -> [Parameter; P] {
+    assert!(P == crate::brdf::parameters(terms), "P must be parameters(TERMS)");
+    let mut list = [PARAMETERS[0]; P];
+    let mut index = 0;
+    while index < EVERY {
+        if has(terms, index) {
+            list[slot(terms, index)] = PARAMETERS[index];
+        }
+        index += 1;
+    }
+    list
+}
+
+impl<R, D, M, const TERMS: u8, const P: usize, const C: usize> Model<R, P, C> for Microfacet<TERMS, D, M>
+where
+    R: Real,
+    D: Distribution,
+    M: Masking<D, C>,
+{
+    const PARAMETERS: [Parameter; P] = parameters_of(TERMS);
+    type Pass = Brdf<R, TERMS, D, M>;
+    type Begun<const L: usize> = Lift<R, L>;
+
+    fn geometry(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; C], SampleError> {
+        M::geometry(theta_i, theta_s, delta_phi)
+    }
+
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn pass(x: &[R; P]) -> Self::Pass {
+        Brdf::at(x)
+    }
+
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn begin<const L: usize>(pass: &Self::Pass, block: &Block<R, L, C>) -> Lift<R, L> {
+        pass.lift(block)
+    }
+
+    #[inline(always)]
+    fn rows<const GRADIENT: bool>(
+        pass: &Self::Pass,
+        block: &Block<R, LANES, C>,
+        lift: &Lift<R, LANES>,
+        lane: usize,
+    ) -> Rows<R, GROUP, P> {
+        const TWO: usize = 2 * GROUP;
+        const THREE: usize = 3 * GROUP;
+        let mut rows = nothing();
+        let place = |index: usize| slot(TERMS, index);
+        match (lobes(TERMS), TERMS & SECOND != 0) {
+            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+        }
+        rows
+    }
+
+    fn row<const GRADIENT: bool>(pass: &Self::Pass, block: &Block<R, 1, C>) -> Rows<R, 1, P> {
+        let mut rows = nothing();
+        pass.write_row::<GRADIENT, P, C>(block, &mut rows, |index| slot(TERMS, index));
+        rows
+    }
+
+    #[inline(always)]
+    fn columns(pass: &Self::Pass, block: &Block<R, LANES, C>, lane: usize) -> [Pack<R, GROUP>; WEIGHTS] {
+        const TWO: usize = 2 * GROUP;
+        const THREE: usize = 3 * GROUP;
+        match (lobes(TERMS), TERMS & SECOND != 0) {
+            (0, _) => pass.columns::<0, 0, GROUP, LANES, C>(block, lane),
+            (1, _) => pass.columns::<GROUP, GROUP, GROUP, LANES, C>(block, lane),
+            (2, false) => pass.columns::<TWO, TWO, GROUP, LANES, C>(block, lane),
+            (2, true) => pass.columns::<TWO, GROUP, GROUP, LANES, C>(block, lane),
+            _ => pass.columns::<THREE, TWO, GROUP, LANES, C>(block, lane),
+        }
+    }
+
+    fn column(pass: &Self::Pass, block: &Block<R, 1, C>) -> [Pack<R, 1>; WEIGHTS] {
+        match (lobes(TERMS), TERMS & SECOND != 0) {
+            (0, _) => pass.columns::<0, 0, 1, 1, C>(block, 0),
+            (1, _) => pass.columns::<1, 1, 1, 1, C>(block, 0),
+            (2, false) => pass.columns::<2, 2, 1, 1, C>(block, 0),
+            (2, true) => pass.columns::<2, 1, 1, 1, C>(block, 0),
+            _ => pass.columns::<3, 2, 1, 1, C>(block, 0),
+        }
+    }
+
+    fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
+        let [surface, volume] = [0, 1].map(|pair| peak(blocks, pair, 2 + pair));
+        Seen {
+            finest: R::of(0.3) * surface.0.min(volume.0).sqrt(),
+            peaks: Pack([surface.1, volume.1]),
+        }
+    }
+
+    fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        let weights = WEIGHT.map(place).into_iter().zip(PAIR);
+        bend(x, step, to, [place(4), place(5)], weights, seen.peaks)
+    }
+}
+
+#[inline(always)]
+fn nothing<R: Real, const G: usize, const P: usize>() -> Rows<R, G, P> {
+    Rows {
+        ln_f: Pack::splat(R::ZERO),
+        gradient: [Pack::splat(R::ZERO); P],
+    }
+}

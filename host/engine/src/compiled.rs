@@ -1,0 +1,175 @@
+//! The computations of one model, compiled: where the types of a model end and its values at run time begin.
+//!
+//! Only the passes are compiled for each model; a search sees them through one dynamic call a pass, and is compiled once for each number of parameters.
+
+use brdfit_core::geometry::{Block, LANES, Sample};
+use brdfit_core::model::{Model, Parameter};
+use brdfit_core::real::Real;
+use brdfit_core::residuals::{Residuals, ln_f, observe};
+use brdfit_core::search::Scene;
+
+use crate::options::Precision;
+use crate::simd::{FastScan, Simd};
+use crate::trace::{self, Trace};
+use crate::{FitError, FitOptions, Outcome, Values, joint, search};
+
+/// The computations of one model, or of one set of its terms.
+#[derive(Clone, Copy, Debug)]
+pub struct Compiled {
+    pub(crate) terms: u8,
+    pub(crate) fit: fn(&[Sample<f64>], &FitOptions) -> Result<Outcome, FitError>,
+    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Option<(f64, Values)>, FitError>,
+    pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
+    pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Result<joint::Fitted, (usize, FitError)>,
+    pub(crate) ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
+    pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Option<(f64, Values)>,
+}
+
+/// A scan of some model, as a search sees it.
+pub type Kernel<'a, R, const P: usize> = dyn Scene<R, P> + Sync + 'a;
+
+/// A model in both precisions, as all of [`brdfit_core`] are.
+pub(crate) trait Both<const P: usize, const C: usize>:
+    Model<f64, P, C> + Model<f32, P, C> + Send + Sync
+{
+}
+impl<M: Model<f64, P, C> + Model<f32, P, C> + Send + Sync, const P: usize, const C: usize> Both<P, C> for M {}
+
+/// The parameters of a model.
+pub(crate) const fn parameters_of<M: Both<P, C>, const P: usize, const C: usize>() -> &'static [Parameter] {
+    const { &<M as Model<f64, P, C>>::PARAMETERS }
+}
+
+/// The computations of model `M`; `WIDE` gives single precision vector instructions too.
+pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(terms: u8) -> Compiled {
+    Compiled {
+        terms,
+        fit: fit::<M, P, C, WIDE>,
+        descend: descend::<M, P, C>,
+        trace: trace::<M, P, C, WIDE>,
+        joint: joint::<M, P, C>,
+        ln_f: value::<M, P, C>,
+        gradient: gradient::<M, P, C>,
+    }
+}
+
+/// The samples of a scan in the number type of the fit, as blocks for model `M`.
+///
+/// # Errors
+/// [`FitError::Sample`].
+pub fn blocks<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
+    samples: &[Sample<f64>],
+) -> Result<Vec<Block<R, LANES, C>>, FitError> {
+    let mut blocks = vec![Block::EMPTY; samples.len().div_ceil(LANES)];
+    for (index, sample) in samples.iter().enumerate() {
+        let sample = Sample {
+            theta_i: R::of(sample.theta_i),
+            theta_s: R::of(sample.theta_s),
+            delta_phi: R::of(sample.delta_phi),
+            brdf: R::of(sample.brdf),
+            weight: R::of(sample.weight),
+        };
+        let observation = observe::<R, M, P, C>(&sample).map_err(|error| FitError::Sample(index, error))?;
+        blocks[index / LANES].set(index % LANES, &observation);
+    }
+    Ok(blocks)
+}
+
+/// Blocks as a scene.
+fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool>(
+    blocks: &[Block<R, LANES, C>],
+    simd: Simd,
+) -> FastScan<'_, R, M, P, C, WIDE> {
+    FastScan {
+        scan: Residuals::new(blocks),
+        simd,
+    }
+}
+
+fn fit<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+) -> Result<Outcome, FitError> {
+    search::enough(samples, options)?;
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    let exact = blocks::<f64, M, P, C>(samples)?;
+    let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
+    match options.precision {
+        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options),
+        Precision::F32 => {
+            let blocks = blocks::<f32, M, P, C>(samples)?;
+            let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
+            search::run::<f32, P>(&scene, &exact, own, samples, options)
+        }
+    }
+}
+
+fn descend<M: Both<P, C>, const P: usize, const C: usize>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    starts: &[Values],
+) -> Result<Option<(f64, Values)>, FitError> {
+    let blocks = blocks::<f64, M, P, C>(samples)?;
+    let scene = scene::<f64, M, P, C, true>(&blocks, options.simd);
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    Ok(search::descend_from::<P>(&scene, own, options, starts))
+}
+
+fn trace<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+) -> Result<Trace, FitError> {
+    search::enough(samples, options)?;
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    let exact = blocks::<f64, M, P, C>(samples)?;
+    let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
+    match options.precision {
+        Precision::F64 => Ok(trace::watch::<f64, P>(&exact, &exact, own, options)),
+        Precision::F32 => {
+            let blocks = blocks::<f32, M, P, C>(samples)?;
+            let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
+            Ok(trace::watch::<f32, P>(&scene, &exact, own, options))
+        }
+    }
+}
+
+fn joint<M: Both<P, C>, const P: usize, const C: usize>(
+    all: &[&[Sample<f64>]],
+    shared: &[bool],
+    options: &FitOptions,
+) -> Result<joint::Fitted, (usize, FitError)> {
+    let each = all.iter().enumerate();
+    let each = each.map(|(place, samples)| blocks::<f64, M, P, C>(samples).map_err(|error| (place, error)));
+    let blocks: Vec<_> = each.collect::<Result<_, _>>()?;
+    let scans: Vec<_> = blocks
+        .iter()
+        .map(|blocks| scene::<f64, M, P, C, true>(blocks, options.simd))
+        .collect();
+    let scans: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    Ok(joint::run::<P>(&scans, own, shared, options, all))
+}
+
+fn value<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: &Sample<f64>) -> Option<f64> {
+    let geometry = <M as Model<f64, P, C>>::geometry(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
+    let x = Residuals::<f64, M, P, C>::from_values(values.try_into().ok()?);
+    Some(brdfit_core::residuals::value::<f64, M, P, C>(&x, geometry))
+}
+
+fn gradient<M: Both<P, C>, const P: usize, const C: usize>(
+    values: &[f64],
+    sample: &Sample<f64>,
+) -> Option<(f64, Values)> {
+    let geometry = <M as Model<f64, P, C>>::geometry(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
+    let x = Residuals::<f64, M, P, C>::from_values(values.try_into().ok()?);
+    let (value, gradient) = ln_f::<f64, M, P, C>(&x, geometry);
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    let by_parameter = gradient.iter().zip(own).zip(values).map(|((slope, parameter), value)| {
+        if parameter.is_squared() {
+            slope * 2.0 * value
+        } else {
+            *slope
+        }
+    });
+    Some((value, by_parameter.collect()))
+}

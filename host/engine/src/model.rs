@@ -1,0 +1,128 @@
+//! A model as the program knows it: what it is called, its parameters, and its computations, compiled.
+
+use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
+use brdfit_core::geometry::Sample;
+use brdfit_core::model::Parameter;
+
+use crate::compiled::Compiled;
+use crate::models::MODELS;
+use crate::{FitError, FitOptions, Values};
+
+/// A model that scans can be fitted with, one of [`MODELS`].
+#[derive(Debug)]
+pub struct Model {
+    /// What options and results call it.
+    pub name: &'static str,
+    /// What it is made of.
+    pub what: &'static str,
+    /// Where its formulas come from.
+    pub source: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    /// The terms that can be left out of it; 0 if it is no microfacet model.
+    pub terms: u8,
+    pub(crate) whole: Compiled,
+    /// Sets of its terms that are compiled on their own.
+    pub(crate) sets: &'static [Compiled],
+}
+
+impl PartialEq for Model {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Model {
+    /// The paper's model, Eq. 14.
+    pub const fn paper() -> &'static Model {
+        &MODELS[0]
+    }
+
+    /// The model of this name.
+    pub fn find(name: &str) -> Option<&'static Model> {
+        MODELS.iter().find(|model| model.name == name)
+    }
+
+    /// Place of the parameter of this name.
+    pub fn place(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|parameter| parameter.name == name)
+    }
+
+    /// The value of the parameter of this name.
+    pub fn value(&self, values: &[f64], name: &str) -> Option<f64> {
+        values.get(self.place(name)?).copied()
+    }
+
+    /// Names and values of the parameters.
+    pub fn named<'a>(&self, values: &'a [f64]) -> impl Iterator<Item = (&'static str, f64)> + use<'a> {
+        let parameters = self.parameters.iter().map(|parameter| parameter.name);
+        parameters.zip(values.iter().copied())
+    }
+
+    /// The least values of a fit, unless something else is asked for.
+    pub fn lower(&self) -> Values {
+        self.parameters.iter().map(|parameter| parameter.bounds.0).collect()
+    }
+
+    /// The largest.
+    pub fn upper(&self) -> Values {
+        self.parameters.iter().map(|parameter| parameter.bounds.1).collect()
+    }
+
+    /// Is it the model of Eq. 14?
+    pub fn is_paper(&self) -> bool {
+        self == Model::paper()
+    }
+
+    /// Does `terms` leave out the parameter in this place?
+    pub fn left_out(&self, terms: u8, place: usize) -> bool {
+        let missing = self.terms & !terms;
+        let no_lobes = self.terms != 0 && terms & (SURFACE | VOLUME) == 0;
+        match self.parameters[place].name {
+            "rho_d" => missing & DIFFUSE != 0,
+            "rho_s" | "rho_2" | "m_2" => missing & SURFACE != 0,
+            "rho_v" | "m_v" => missing & VOLUME != 0,
+            "kappa" => missing & ABSORBING != 0 || no_lobes,
+            _ => no_lobes,
+        }
+    }
+
+    /// The value of a parameter that is left out: a weight and kappa are 0, what has then no effect is 1.
+    pub fn absent(&self, place: usize) -> f64 {
+        let parameter = &self.parameters[place];
+        if parameter.is_weight() || parameter.is_squared() {
+            0.0
+        } else {
+            1.0
+        }
+    }
+
+    /// ln f in the directions of `sample`, f in sr^-1, and its derivatives by the parameters; none beyond the horizon.
+    pub fn gradient(&self, values: &[f64], sample: &Sample<f64>) -> Option<(f64, Values)> {
+        (self.whole.gradient)(values, sample)
+    }
+
+    /// ln f in the directions of `sample`, f in sr^-1; none beyond the horizon.
+    pub fn ln_f(&self, values: &[f64], sample: &Sample<f64>) -> Option<f64> {
+        (self.whole.ln_f)(values, sample)
+    }
+
+    /// What is compiled of the terms of `options`, and the options for it: what no compiled set leaves out is held.
+    pub(crate) fn compiled(&self, options: &FitOptions) -> Result<(&Compiled, FitOptions), FitError> {
+        let (terms, mut options) = (options.terms & self.terms, *options);
+        if self.terms != 0 && terms & (DIFFUSE | SURFACE | VOLUME) == 0 {
+            return Err(FitError::Terms(options.terms));
+        }
+        options.terms = terms;
+        if let Some(set) = self.sets.iter().find(|set| set.terms == terms) {
+            return Ok((set, options));
+        }
+        for place in 0..self.parameters.len() {
+            if self.left_out(terms, place) {
+                options.lower[place] = self.absent(place);
+                options.upper[place] = self.absent(place);
+            }
+        }
+        Ok((&self.whole, options))
+    }
+}

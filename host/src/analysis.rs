@@ -1,0 +1,13 @@
+//! What is computed beyond a search. Nothing here prints, reads options, or draws.
+
+pub mod bootstrap;
+pub mod choose;
+pub mod converge;
+pub mod derived;
+pub mod fit;
+pub mod paper;
+pub mod paper_sets;
+pub mod profile;
+pub mod reflectance;
+pub mod stability;
+pub mod undetermined;

@@ -1,0 +1,171 @@
+//! What a fit determines at each angle of incidence, also where the parameters themselves are not determined.
+
+use std::f64::consts::{FRAC_PI_2, LN_2, PI};
+
+use brdfit_core::brdf::{ALL, Brdf, Params, fresnel};
+use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::real::Real;
+
+use super::reflectance::reflectance;
+use crate::engine::uncertainty::Uncertainty;
+
+/// The peak of a lobe is searched up to this far from the normal, radians (89.9 degrees).
+const HORIZON: f64 = 0.9989 * FRAC_PI_2;
+
+/// A number with its standard error, in the same unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// The best value.
+    pub value: f64,
+    /// Its standard error by the delta method.
+    pub stderr: f64,
+}
+
+/// The surface lobe in the plane of incidence, without the other terms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Where it is brightest, radians, positive forward; at most 89.9 degrees.
+    pub theta_s: f64,
+    /// Its BRDF there, sr^-1.
+    pub f: Value,
+    /// Its full width at half of that, radians; `None` where it does not fall to half before the horizon.
+    pub width: Option<Value>,
+}
+
+/// The derived quantities of one angle of incidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Derived {
+    /// The angle, radians.
+    pub theta_i: f64,
+    /// rho_s F at theta_d = theta_i, which is the specular direction; `None` without a surface lobe.
+    pub rho_s_f: Option<Value>,
+    /// rho_v F at theta_de = theta_i, which is the retro direction; `None` without a volume lobe.
+    pub rho_v_f: Option<Value>,
+    /// The surface lobe; `None` if there is none.
+    pub peak: Option<Peak>,
+    /// Directional-hemispherical reflectance, dimensionless; above 1 the model makes energy.
+    pub reflectance: Value,
+}
+
+/// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
+pub fn at_each_angle(samples: &[Sample<f64>], params: &Params<f64>, known: &Uncertainty) -> Vec<Derived> {
+    let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
+    angles.into_iter().map(|theta_i| at(theta_i, params, known)).collect()
+}
+
+/// At one angle of incidence, radians.
+pub fn at(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Derived {
+    let value = |(value, mut gradient): (f64, [f64; 6])| {
+        for (slope, parameter) in gradient.iter_mut().zip(params.to_array()) {
+            // What a parameter of its own size does not change does not depend on it, however unknown that is.
+            if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
+                *slope = 0.0;
+            }
+        }
+        let stderr = known.stderr_of(&gradient);
+        Value { value, stderr }
+    };
+    let (f, d_n, d_kappa) = fresnel(Real::sin_cos(theta_i).1, params.n, params.kappa);
+    let product = |index: usize| {
+        let rho = params.to_array()[index];
+        let mut gradient = [0.0, 0.0, 0.0, 0.0, rho * d_n, rho * d_kappa];
+        gradient[index] = f;
+        (rho * f > 0.0).then(|| value((rho * f, gradient)))
+    };
+    let rho_s_f = product(1);
+    Derived {
+        theta_i,
+        rho_s_f,
+        rho_v_f: product(2),
+        peak: rho_s_f.and_then(|_| peak(theta_i, params, known)),
+        reflectance: value(reflectance(params, theta_i)),
+    }
+}
+
+fn peak(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Option<Peak> {
+    let lobe = Brdf::<f64, ALL>::new(&Params {
+        rho_d: 0.0,
+        rho_v: 0.0,
+        ..*params
+    });
+    let geometry = |theta_s: f64| Geometry::new(theta_i, theta_s, PI).ok();
+    let ln_f = |theta_s: f64| geometry(theta_s).map_or(f64::NEG_INFINITY, |geometry| lobe.ln_f(&geometry));
+    let gradient = |theta_s: f64| {
+        let mut gradient = lobe.gradient(&geometry(theta_s)?).1;
+        // The other terms are no part of the lobe.
+        (gradient[0], gradient[2]) = (0.0, 0.0);
+        Some(gradient)
+    };
+    let top = brightest(&ln_f, theta_i, params.m);
+    let (at_top, ln_top) = (gradient(top)?, ln_f(top));
+    let f = Real::exp(ln_top);
+    let half = |end: f64| {
+        let theta_s = crossing(|theta_s| ln_f(theta_s) - (ln_top - LN_2), top, end)?;
+        let step = 1e-4 * (theta_s - top);
+        let slope = (ln_f(theta_s + step) - ln_f(theta_s - step)) / (2.0 * step);
+        let here = gradient(theta_s)?;
+        Some((theta_s, std::array::from_fn(|k| (at_top[k] - here[k]) / slope)))
+    };
+    let width = half(HORIZON).zip(half(-HORIZON));
+    let width = width.map(|((right, d_right), (left, d_left)): ((_, [f64; 6]), (_, [f64; 6]))| {
+        let gradient = std::array::from_fn(|k| d_right[k] - d_left[k]);
+        Value {
+            value: right - left,
+            stderr: known.stderr_of(&gradient),
+        }
+    });
+    Some(Peak {
+        theta_s: top,
+        f: Value {
+            value: f,
+            stderr: f * known.stderr_of(&at_top),
+        },
+        width,
+    })
+}
+
+/// Where a lobe of slope m around theta_i is brightest: the best of a grid that is dense at theta_i, then golden sections.
+fn brightest(ln_f: &impl Fn(f64) -> f64, theta_i: f64, m: f64) -> f64 {
+    const DEGREES: i32 = 89;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let mut grid: Vec<f64> = (-DEGREES..=DEGREES)
+        .map(|degree| f64::from(degree).to_radians())
+        .collect();
+    grid.extend((-20..=20).map(|k| theta_i + 0.1 * f64::from(k) * m));
+    grid.extend([HORIZON, -HORIZON]);
+    grid.retain(|theta_s| theta_s.abs() <= HORIZON);
+    grid.sort_by(f64::total_cmp);
+    let values: Vec<f64> = grid.iter().map(|&theta_s| ln_f(theta_s)).collect();
+    let best = (0..grid.len())
+        .max_by(|&a, &b| values[a].total_cmp(&values[b]))
+        .unwrap_or(0);
+    let (mut low, mut high) = (grid[best.saturating_sub(1)], grid[(best + 1).min(grid.len() - 1)]);
+    for _ in 0..60 {
+        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        if ln_f(a) < ln_f(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Where a function that is positive at `inside` becomes 0 on the way to `end`; `None` if it does not.
+fn crossing(g: impl Fn(f64) -> f64, inside: f64, end: f64) -> Option<f64> {
+    let (mut inside, mut outside) = (inside, end);
+    if g(end).is_nan() || g(end) > 0.0 {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        if g(middle) > 0.0 {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    Some(0.5 * (inside + outside))
+}

@@ -1,0 +1,124 @@
+//! The fit of one measured scan, with all that follows from it.
+
+use std::time::{Duration, Instant};
+
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::{Geometry, Sample};
+
+use super::choose::{self, Choice};
+use super::derived::{self, Derived};
+use crate::engine::{self, FitOptions, Outcome};
+use crate::error::Error;
+use crate::input::{self, LeftOut, Measurement, ReadAs, left_out};
+
+/// One fitted scan.
+#[derive(Clone, Debug)]
+pub struct FittedScan {
+    /// The scan's file.
+    pub file: String,
+    /// Which scan of the file it is, if that has a name.
+    pub scan: Option<String>,
+    /// What the numbers of the file were taken for.
+    pub read_as: ReadAs,
+    /// What was left out of the scan.
+    pub left_out: Vec<LeftOut>,
+    /// The part of each angle of incidence, in order of that angle.
+    pub angles: Vec<AngleOfIncidence>,
+    /// What was asked for.
+    pub options: FitOptions,
+    /// What came out.
+    pub outcome: Outcome,
+    /// Sum of squared residuals of ln f over their variances, if the file gives standard deviations; that of a right model is near the degrees of freedom.
+    pub chi2: Option<f64>,
+    /// Why these terms, if the scan chose them.
+    pub choice: Option<Choice>,
+    /// What follows from it at each angle of incidence.
+    pub derived: Vec<Derived>,
+    /// Time of the search, without reading the file; none where every run is to give the same bits.
+    pub elapsed: Option<Duration>,
+}
+
+/// How well the samples of one angle of incidence are fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AngleOfIncidence {
+    /// The angle in radians.
+    pub theta_i: f64,
+    /// Number of its samples.
+    pub samples: usize,
+    /// Root of the mean squared residual of ln f, dimensionless.
+    pub rms_ln: f64,
+}
+
+impl FittedScan {
+    /// Puts together what the engine found.
+    pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
+        let (samples, left_out) = without_outliers(measurement, &outcome);
+        FittedScan {
+            file: measurement.file.clone(),
+            scan: measurement.name.clone(),
+            read_as: measurement.read_as,
+            left_out,
+            angles: by_angle(&samples, &outcome.params),
+            derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
+            options: *options,
+            chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
+            outcome,
+            choice: None,
+            elapsed: Some(elapsed),
+        }
+    }
+}
+
+/// Fits one scan.
+///
+/// # Errors
+/// The scan has too few samples, or no start gives a finite model.
+pub fn fit(measurement: &Measurement, options: &FitOptions) -> Result<FittedScan, Error> {
+    let begun = Instant::now();
+    let found = choose::fit(&measurement.samples, options);
+    let elapsed = begun.elapsed();
+    match found {
+        Ok((_, outcome, _)) if !outcome.cost.is_finite() => Err(Error::new("no start gives a finite model")
+            .in_file(measurement.label())
+            .help("take less extreme --bounds or --precision f64")),
+        Ok((options, outcome, choice)) => Ok(FittedScan {
+            choice,
+            ..FittedScan::new(measurement, &options, outcome, elapsed)
+        }),
+        Err(error) => Err(input::explain(measurement, error)),
+    }
+}
+
+/// The samples that were fitted, and all that was left out.
+fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample<f64>>, Vec<LeftOut>) {
+    let (mut samples, mut left_out) = (measurement.samples.clone(), measurement.left_out.clone());
+    if let Some(robust) = &outcome.robust {
+        let mut counts = left_out::Counts::default();
+        for &outlier in robust.outliers.iter().rev() {
+            // Degrees as they stand in the file have few decimals.
+            let theta_i = samples.remove(outlier).theta_i.to_degrees();
+            counts.add(left_out::Reason::Outlier, (theta_i * 1e9).round() / 1e9);
+        }
+        left_out.extend(counts.list());
+    }
+    (samples, left_out)
+}
+
+fn by_angle(samples: &[Sample<f64>], params: &Params<f64>) -> Vec<AngleOfIncidence> {
+    let mut order: Vec<&Sample<f64>> = samples.iter().collect();
+    order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
+    let groups = order.chunk_by(|a, b| a.theta_i == b.theta_i);
+    let one = |group: &[&Sample<f64>]| {
+        let squares = group.iter().filter_map(|sample| {
+            let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
+            let residual = sample.weight * (engine::ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf));
+            Some(residual * residual)
+        });
+        AngleOfIncidence {
+            theta_i: group[0].theta_i,
+            samples: group.len(),
+            rms_ln: (squares.sum::<f64>() / group.len() as f64).sqrt(),
+        }
+    };
+    groups.map(one).collect()
+}

@@ -1,0 +1,211 @@
+//! Profile likelihood: the cost over one parameter, minimised over the others, and the intervals that follow.
+
+use brdfit_core::brdf::NAMES;
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
+
+use crate::engine::{self, FitError, FitOptions, Outcome};
+
+pub mod calibrate;
+pub mod hold;
+
+use calibrate::{LEVELS, threshold};
+use hold::{Held, Point};
+
+/// Each step away from the best value is longer than the last by this factor.
+const GROWTH: f64 = 1.25;
+
+/// An end of an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct End {
+    /// The value there, dimensionless.
+    pub value: f64,
+    /// It is the bound of the parameter: the data do not end the interval.
+    pub at_bound: bool,
+}
+
+/// The values that the data do not refute at a level; where some between them are refuted too, the hull.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Confidence, 0 to 1.
+    pub level: f64,
+    /// Least value.
+    pub low: End,
+    /// Largest value.
+    pub high: End,
+}
+
+/// The profile of one parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Place of the parameter in [`NAMES`].
+    pub index: usize,
+    /// The least cost of all points.
+    pub best: Point,
+    /// In order of value.
+    pub points: Vec<Point>,
+    /// Samples less parameters inside their bounds.
+    pub degrees_of_freedom: usize,
+    /// At [`LEVELS`].
+    pub intervals: [Interval; 2],
+}
+
+impl Profile {
+    /// Rise of the cost of a point above the best, over the variance of a residual; dimensionless.
+    pub fn rise(&self, point: &Point) -> f64 {
+        if point.cost == self.best.cost {
+            return 0.0;
+        }
+        (point.cost - self.best.cost) / self.best.cost * self.degrees_of_freedom as f64
+    }
+}
+
+/// Profiles parameter `index` of [`NAMES`] from bound to bound, starting from a fit of these samples with these options; in `f64`.
+///
+/// Each point is the best of fits from its neighbours on both sides, from the minima of the fit, and from a search of its own.
+/// The intervals are those of the F test, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
+///
+/// # Errors
+/// [`FitError`].
+pub fn profile(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: &Outcome,
+    index: usize,
+    copies: u32,
+) -> Result<Profile, FitError> {
+    let degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
+    let limits = LEVELS.map(|level| threshold(level, degrees_of_freedom.max(1)));
+    let held = Held::new(samples, options, outcome, index)?;
+    let (lower, upper) = (options.lower.to_array()[index], options.upper.to_array()[index]);
+    let at = outcome.params.to_array()[index];
+    // What rounding to f32 has left is made up here.
+    let (cost, params) =
+        engine::descend(&held.blocks, options, &[outcome.params])?.unwrap_or((outcome.cost, outcome.params));
+    let best = Point {
+        value: params.to_array()[index],
+        cost,
+        params,
+    };
+    let first = first_step(outcome, index, upper - lower);
+    let mut points = vec![best];
+    for end in [lower, upper] {
+        let mut side: Vec<Point> = Vec::new();
+        for value in outward(at, end, first) {
+            let from = side.last().unwrap_or(&best);
+            let point = held.at(value, &[from.params], true)?;
+            side.push(point);
+        }
+        // Back again: a better valley that was met farther out may reach in.
+        for k in (1..side.len()).rev() {
+            let again = held.at(side[k - 1].value, &[side[k].params], false)?;
+            if again.cost < side[k - 1].cost {
+                side[k - 1] = again;
+            }
+        }
+        points.extend(side);
+    }
+    points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    points.dedup_by(|b, a| a.value == b.value);
+    let mut profile = Profile {
+        index,
+        best: *points.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(&best),
+        points,
+        degrees_of_freedom,
+        intervals: LEVELS.map(|level| Interval {
+            level,
+            low: End {
+                value: lower,
+                at_bound: true,
+            },
+            high: End {
+                value: upper,
+                at_bound: true,
+            },
+        }),
+    };
+    // The wider first: on its way it may meet values that belong to the narrower.
+    for (k, limit) in limits.into_iter().enumerate().rev() {
+        for high in [false, true] {
+            let mut value = crossing(&mut profile, &held, limit, high)?;
+            if copies > 0 {
+                let at = value.unwrap_or(if high { upper } else { lower });
+                let null = profile.points.iter().find(|point| point.value == at).unwrap_or(&best);
+                let scale = outcome.uncertainty.scale;
+                let limits = calibrate::thresholds(samples, options, index, &null.params, scale, copies)?;
+                value = crossing(&mut profile, &held, limits[k], high)?;
+            }
+            if let Some(value) = value {
+                let end = End { value, at_bound: false };
+                let interval = &mut profile.intervals[k];
+                *(if high { &mut interval.high } else { &mut interval.low }) = end;
+            }
+        }
+    }
+    Ok(profile)
+}
+
+/// A first step that is short against the standard error, if there is one, and the value itself.
+fn first_step(outcome: &Outcome, index: usize, range: f64) -> f64 {
+    let error = outcome.uncertainty.stderr[index];
+    let own = 0.05 * outcome.params.to_array()[index].abs().max(1e-3 * range);
+    if error > 0.0 { own.min(0.5 * error) } else { own }
+}
+
+/// Values from `at`, exclusive, to `end`, inclusive, in growing steps.
+fn outward(at: f64, end: f64, first: f64) -> Vec<f64> {
+    const MOST: usize = 200;
+    let (mut values, mut step, mut away) = (Vec::new(), first, first);
+    while away < 0.95 * (end - at).abs() && values.len() < MOST {
+        values.push(at + away * (end - at).signum());
+        step *= GROWTH;
+        away += step;
+    }
+    if end != at {
+        values.push(end);
+    }
+    values
+}
+
+/// Where the rise passes `limit` outermost on one side; adds the points it makes. `None` if it does not before the bound.
+fn crossing(profile: &mut Profile, held: &Held, limit: f64, high: bool) -> Result<Option<f64>, FitError> {
+    const ROUNDS: usize = 30;
+    const CLOSE: f64 = 1e-4;
+    let mut order: Vec<Point> = profile.points.clone();
+    if !high {
+        order.reverse();
+    }
+    let Some(last) = order.iter().rposition(|point| profile.rise(point) <= limit) else {
+        return Ok(None);
+    };
+    let Some(mut outside) = order.get(last + 1).copied() else {
+        return Ok(None);
+    };
+    let mut inside = order[last];
+    for _ in 0..ROUNDS {
+        // The root of the rise is nearly linear in the parameter.
+        let root = |rise: f64| Real::sqrt(rise.max(0.0));
+        let (a, b) = (root(profile.rise(&inside)), root(profile.rise(&outside).min(1e6)));
+        let part = ((root(limit) - a) / (b - a)).clamp(0.05, 0.95);
+        let value = inside.value + part * (outside.value - inside.value);
+        let point = held.at(value, &[inside.params, outside.params], false)?;
+        profile.points.push(point);
+        if profile.rise(&point) <= limit {
+            inside = point;
+        } else {
+            outside = point;
+        }
+        let gap = (outside.value - inside.value).abs();
+        if (root(profile.rise(&point)) / root(limit) - 1.0).abs() < CLOSE || gap < CLOSE * CLOSE * value.abs() {
+            inside = point;
+            break;
+        }
+    }
+    profile.points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    Ok(Some(inside.value))
+}
+
+/// The name of the profiled parameter.
+pub fn name(profile: &Profile) -> &'static str {
+    NAMES[profile.index]
+}

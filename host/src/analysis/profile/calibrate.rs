@@ -1,0 +1,47 @@
+//! How far the cost may rise before a value is refuted: by the F test, or as copies of the scan show it.
+
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::Sample;
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::hold::hold;
+use crate::analysis::bootstrap::{Noise, copy, quantile};
+use crate::engine::{self, FitError, FitOptions};
+
+/// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
+pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
+
+/// The rise of the cost over the variance of a residual that ends an interval of this level: the square of Student's t (F of 1 and `degrees_of_freedom`).
+pub fn threshold(level: f64, degrees_of_freedom: usize) -> f64 {
+    let t =
+        StudentsT::new(0.0, 1.0, degrees_of_freedom as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * level));
+    t * t
+}
+
+/// The rises of the cost, over the variance of a residual, that shares of [`LEVELS`] of the copies stay below when parameter `index` is held at what they were made with.
+///
+/// The `count` copies are of the model at `params`, with normal errors of ln f of standard deviation `scale`; threads of the current rayon pool share them, and change no bit.
+/// Where bounds are near, or parameters can stand in for each other, the rise is less than F says: there are fewer ways to go.
+///
+/// # Errors
+/// [`FitError`].
+pub fn thresholds(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    index: usize,
+    params: &Params<f64>,
+    scale: f64,
+    count: u32,
+) -> Result<[f64; 2], FitError> {
+    let value = params.to_array()[index];
+    let one = |k: u32| {
+        let copy = copy(samples, params, scale, &mut Noise::new(options.seed, u64::from(k)));
+        let outcome = engine::fit(&copy, options)?;
+        let held = hold(&copy, options, &outcome, index, value)?;
+        let best = outcome.cost.min(held.cost);
+        Ok((held.cost - best) / best * outcome.uncertainty.degrees_of_freedom as f64)
+    };
+    let rises: Vec<f64> = (0..count).into_par_iter().map(one).collect::<Result<_, _>>()?;
+    Ok(LEVELS.map(|level| quantile(&rises, level)))
+}

@@ -1,0 +1,195 @@
+//! `brdfit batch`: many scans, of which each is fitted once, whatever happens.
+
+mod journal;
+mod list;
+#[cfg(feature = "parquet")]
+mod parquet;
+pub(super) mod record;
+pub(super) mod results;
+mod run;
+pub(super) mod shard;
+mod summary;
+
+use std::io::{self, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::engine::FitOptions;
+use crate::engine::simd::Simd;
+use crate::error::Error;
+use crate::input::{ReadOptions, STDIN};
+use crate::interrupt;
+use crate::options::SearchArguments;
+use crate::output::replace_with;
+use crate::streams::{Ended, Streams};
+use journal::Journal;
+use record::{Head, Record};
+use results::Form;
+use shard::Shard;
+use summary::Summary;
+
+/// Fits many scans; keeps what is done when interrupted
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C the scans in work are finished and kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
+)]
+pub struct Arguments {
+    /// Scans, folders of scans, patterns in quotes, or @LIST, a file of names (@- is standard input)
+    #[arg(required = true, value_name = "DIR|GLOB|@LIST|SCAN")]
+    scans: Vec<PathBuf>,
+    /// Results: .csv, .json or .parquet; - is standard output
+    #[arg(short, long, visible_alias = "output", value_name = "FILE")]
+    out: PathBuf,
+    /// Form of the results [default: by the ending of --out, csv for -]
+    #[arg(long, value_enum)]
+    format: Option<Form>,
+    /// Goes on from what an interrupted run has kept; does no harm if there is none
+    #[arg(long)]
+    resume: bool,
+    /// Fits only part i of n, to be merged with the others
+    #[arg(long, value_name = "i/n")]
+    shard: Option<Shard>,
+    #[command(flatten)]
+    search: SearchArguments,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// Runs the subcommand; the result says how it went.
+///
+/// # Errors
+/// The first thing that is wrong with options or the output, but not with a scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
+    let out = arguments.out.as_path();
+    let to_stdout = out.as_os_str() == STDIN;
+    let shard = arguments.shard.unwrap_or(Shard::WHOLE);
+    if to_stdout && arguments.shard.is_some() {
+        return Err(Error::new("a part of a batch needs a file").help("give --out a name"));
+    }
+    let form = Form::of(out, arguments.format)?;
+    let options = arguments.search.fit_options()?;
+    let files = list::files(&arguments.scans, out, streams.input)?;
+    let head = Head {
+        brdfit: env!("CARGO_PKG_VERSION").to_string(),
+        options: asked_for(options, arguments),
+        files: files.len(),
+        names: record::names(&files),
+        rows: form.rows(),
+        columns: run::columns(),
+        shard,
+    };
+    let scratch = to_stdout.then(tempfile::tempdir).transpose().map_err(|error| {
+        Error::new(format!("there is no room for finished fits: {error}")).help("give --out the name of a file")
+    })?;
+    let kept_in = match &scratch {
+        Some(folder) => folder.path().join("partial"),
+        None => record::partial_path(out, shard),
+    };
+    let journal = Mutex::new(Journal::open(kept_in, &head, arguments.resume)?);
+    let job = run::Job {
+        files: &files,
+        options,
+        read: &arguments.read,
+        rows: head.rows,
+        interrupt: interrupt::flag(),
+    };
+    let places: Vec<usize> = (0..files.len()).filter(|&index| shard.has(index)).collect();
+    let bar = progress(streams.progress, places.len());
+    let pool = arguments.search.pool()?;
+    let done = pool.install(|| run::run(&job, &places, &journal, &|| bar.inc(1)));
+    bar.finish_and_clear();
+    let (done, mut journal) = (done?, journal.into_inner().unwrap_or_else(PoisonError::into_inner));
+    if done < places.len() {
+        let kept = match scratch {
+            Some(_) => "with --out FILE they would have been kept".to_string(),
+            None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
+        };
+        return Ok(Ended {
+            code: interrupt::EXIT_CODE,
+            why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
+        });
+    }
+    let mut records = places.iter().map(|&index| journal.record(index));
+    let ended = match arguments.shard {
+        Some(shard) => {
+            let mut summary = Summary::default();
+            let path = record::shard_path(out, shard);
+            replace_with(&path, |file| part(&head, &mut summary.of(&mut records), file))?;
+            summary.tell(true, streams)
+        }
+        None => deliver(form, &head.columns, &mut records, out, streams)?,
+    };
+    journal.remove();
+    Ok(ended)
+}
+
+/// Writes the results of a whole batch, and tells how it went; the result says how it went.
+///
+/// # Errors
+/// A record is broken, or the output can not be written.
+pub(super) fn deliver(
+    form: Form,
+    columns: &[String],
+    records: &mut dyn Iterator<Item = Result<Record, Error>>,
+    out: &Path,
+    streams: &mut Streams,
+) -> Result<Ended, Error> {
+    let mut summary = Summary::default();
+    let to_stdout = out.as_os_str() == STDIN;
+    if to_stdout {
+        let mut copy = || -> io::Result<()> {
+            let mut scratch = tempfile::tempfile()?;
+            results::write(form, columns, &mut summary.of(records), &mut scratch)?;
+            scratch.rewind()?;
+            io::copy(&mut scratch, streams.output)?;
+            streams.output.flush()
+        };
+        match copy() {
+            // A reader that wants no more, such as `head`, is no error.
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                return Err(error
+                    .downcast::<Error>()
+                    .unwrap_or_else(|error| Error::new(format!("standard output can not be written: {error}"))));
+            }
+            _ => {}
+        }
+    } else {
+        replace_with(out, |file| {
+            results::write(form, columns, &mut summary.of(records), file)
+        })?;
+    }
+    Ok(summary.tell(!to_stdout, streams))
+}
+
+/// Writes the records of a part, in order.
+fn part(head: &Head, records: &mut dyn Iterator<Item = Result<Record, Error>>, file: &mut dyn Write) -> io::Result<()> {
+    file.write_all(record::line(head).as_bytes())?;
+    for record in records {
+        file.write_all(record::line(&record.map_err(io::Error::other)?).as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Everything that changes a result, as text.
+fn asked_for(options: FitOptions, arguments: &Arguments) -> String {
+    // The machines of a cluster differ in their instructions, and give the same bits.
+    let options = FitOptions {
+        simd: Simd::Portable,
+        ..options
+    };
+    format!("{options:?}, {:?}", arguments.read)
+}
+
+fn progress(shown: bool, files: usize) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(files as u64);
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} files, {per_sec}, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}

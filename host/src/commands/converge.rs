@@ -1,0 +1,105 @@
+//! `brdfit converge`: how fast each method comes how near to the best known fit of a scan.
+
+mod write;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::ProgressBar;
+
+use crate::analysis::converge::{METHODS, study};
+use crate::analysis::paper_sets::{Subject, paper_scans};
+use crate::error::Error;
+use crate::input::{self, ReadOptions, left_out};
+use crate::options::all_parameters;
+use crate::output::{OutputArguments, TableFormat};
+use crate::plot::{self, picture};
+use crate::streams::Streams;
+use crate::terms::terms;
+
+/// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
+#[derive(Args, Debug)]
+#[command(
+    after_help = "A pass with derivatives counts as one, a pass without them as half.\nEach search runs three times on one thread, and the fastest counts.\n\nExample:\n  brdfit converge paint.csv --seeds 50 --plot paint.svg"
+)]
+pub struct Arguments {
+    /// A scan, as `brdfit fit` reads it; - is standard input
+    #[arg(value_name = "SCAN", required_unless_present = "paper", conflicts_with = "paper")]
+    scan: Option<PathBuf>,
+    /// Takes the paper's three synthetic sets, which are built in
+    #[arg(long)]
+    paper: bool,
+    /// All six parameters that the scan was made with: adds the errors of rho_d, m and the curve
+    #[arg(long, value_name = "NAME=X,...", conflicts_with = "paper")]
+    truth: Option<String>,
+    /// Number of searches by each method, with seeds from 0
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    seeds: u32,
+    /// Terms of the model, of diffuse,surface,volume,absorbing
+    #[arg(long, value_name = "LIST", default_value = "all")]
+    terms: String,
+    #[command(flatten)]
+    output: OutputArguments<TableFormat>,
+    /// Draws the excess cost over the run time, as SVG or PNG
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// Runs the subcommand, on one thread.
+///
+/// # Errors
+/// The first thing that is wrong with options, file or scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let terms = terms(&arguments.terms)?;
+    let truth = arguments.truth.as_deref();
+    let truth = truth.map(|list| all_parameters(list, "--truth")).transpose()?;
+    let measurement = match &arguments.scan {
+        Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
+        None => None,
+    };
+    let scans: Vec<Subject> = match &measurement {
+        Some(measurement) => vec![Subject {
+            name: measurement.label(),
+            samples: measurement.samples.clone(),
+            truth,
+        }],
+        None => paper_scans(),
+    };
+    let bar = progress(streams.progress, scans.len(), arguments.seeds);
+    let mut studies = Vec::new();
+    for Subject { name, samples, truth } in &scans {
+        let study = study(name, samples, truth.as_ref(), terms, arguments.seeds, || bar.inc(1));
+        let study = study.map_err(|error| match &measurement {
+            Some(measurement) => input::explain(measurement, error),
+            None => Error::new(error.to_string()).in_file(name),
+        })?;
+        if !study.best_mse2.is_finite() {
+            return Err(Error::new("no start gives a finite model").in_file(name));
+        }
+        studies.push(study);
+    }
+    bar.finish_and_clear();
+    let text = match arguments.output.format {
+        TableFormat::Text => write::text(&studies, arguments.seeds),
+        TableFormat::Json => write::json(&studies, arguments.seeds),
+        TableFormat::Csv => write::csv(&studies),
+    };
+    if let Some(path) = &arguments.plot {
+        picture::save(path, &plot::converge_svg(&studies, arguments.seeds))?;
+    }
+    arguments.output.deliver(&text, streams.output)?;
+    left_out::note(measurement.as_slice(), streams.errors);
+    Ok(())
+}
+
+fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {
+    if !shown {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(scans as u64 * u64::from(seeds) * METHODS.len() as u64);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

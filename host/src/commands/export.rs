@@ -1,0 +1,97 @@
+//! `brdfit export`: a fitted model for the programs that use it, one file a form.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::error::Error;
+use crate::export::model::Model;
+use crate::export::{bird, constants, glsl, mitsuba, native, zemax};
+use crate::input::{STDIN, bytes};
+use crate::options::all_parameters;
+use crate::output::deliver;
+use crate::streams::Streams;
+
+/// Writes a fitted model for other programs
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example:\n  brdfit fit paint.csv --format json --output paint.json\n  brdfit export paint.json --to mitsuba --output paint.py\n  brdfit export --params rho_d=0.1,rho_s=10,rho_v=0,m=0.1,n=3,kappa=1 --to zemax --output paint.bsdf"
+)]
+pub struct Arguments {
+    /// What `brdfit fit --format json` has written; - is standard input
+    #[arg(
+        value_name = "RESULT.json",
+        required_unless_present = "params",
+        conflicts_with = "params"
+    )]
+    result: Option<PathBuf>,
+    /// All six parameters, in place of a result
+    #[arg(long, value_name = "NAME=X,...")]
+    params: Option<String>,
+    /// Which result, if there are several; the first is 1
+    #[arg(long, value_name = "N", requires = "result")]
+    index: Option<usize>,
+    /// For which program
+    #[arg(long, value_enum)]
+    to: Form,
+    /// Name of the material [default: that of the scan's file]
+    #[arg(long)]
+    name: Option<String>,
+    /// Writes to a file, or with - to standard output
+    #[arg(short, long, visible_alias = "out", value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Form {
+    /// Zemax tabular BSDF
+    Zemax,
+    /// BRDF Explorer, .brdf
+    Glsl,
+    /// Mitsuba 3, the exact model in Python
+    Mitsuba,
+    /// Mitsuba 3, the nearest of its own models
+    MitsubaNative,
+    /// Constants for C
+    C,
+    /// Constants for Rust with brdfit-core
+    Rust,
+    /// EURAMET BiRD JSON, the model with its uncertainties
+    Bird,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// There is no such result, or its parameters have no BRDF.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let mut model = match (&arguments.result, &arguments.params) {
+        (Some(path), _) => {
+            let bytes = if path.as_os_str() == STDIN {
+                bytes::of_stdin(streams.input)?
+            } else {
+                bytes::of_file(path)?
+            };
+            let fail = |error: Error| error.in_file(path.display().to_string());
+            Model::of_json(&bytes, arguments.index).map_err(fail)?
+        }
+        (None, params) => Model::of_params(all_parameters(params.as_deref().unwrap_or_default(), "--params")?),
+    };
+    if let Some(name) = &arguments.name {
+        model.name.clone_from(name);
+    }
+    let text = match arguments.to {
+        Form::Zemax => zemax::write(&model),
+        Form::Glsl => glsl::write(&model),
+        Form::Mitsuba => mitsuba::write(&model),
+        Form::MitsubaNative => {
+            let (text, deviation) = native::write(&model);
+            let _ = writeln!(streams.errors, "{deviation}");
+            text
+        }
+        Form::C => constants::c(&model),
+        Form::Rust => constants::rust(&model),
+        Form::Bird => bird::write(&model),
+    };
+    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+}

@@ -1,0 +1,99 @@
+//! `brdfit fit`: files in, reports out.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use crate::analysis::fit::{FittedScan, fit};
+use crate::engine::{FitOptions, Method};
+use crate::error::Error;
+use crate::input::{self, ReadOptions, left_out};
+use crate::options::SearchArguments;
+use crate::output::{OutputArguments, TableFormat};
+use crate::plot::{self, picture};
+use crate::result;
+use crate::streams::Streams;
+
+/// Fits the model to scans
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example:\n  brdfit fit paint.csv --terms diffuse,surface --fix n=1.5 --format json\n  brdfit fit paint.astm --column R --robust --drop-invalid --mask-retro 6 --max-angle 85"
+)]
+pub struct Arguments {
+    /// Files with scans, such as CSV with the columns theta_i_deg,theta_s_deg,brdf_per_sr; - is standard input
+    #[arg(required = true, value_name = "SCAN")]
+    scans: Vec<PathBuf>,
+    #[command(flatten)]
+    search: SearchArguments,
+    #[command(flatten)]
+    output: OutputArguments<TableFormat>,
+    /// Prints the distinct minima too (JSON always has them)
+    #[arg(long)]
+    minima: bool,
+    /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// Runs the subcommand; nothing is written before every scan is read and fitted.
+///
+/// # Errors
+/// The first thing that is wrong with options, files or the fit.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let options = arguments.search.fit_options()?;
+    let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
+    if arguments.plot.is_some() && measurements.len() > 1 {
+        return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
+    }
+    let pool = arguments.search.pool()?;
+    let bar = progress(streams.progress, &options, measurements.len());
+    let results: Vec<Result<FittedScan, Error>> = pool.install(|| {
+        let each = measurements.par_iter();
+        each.map(|measurement| {
+            let report = fit(measurement, &options);
+            bar.inc(1);
+            report
+        })
+        .collect()
+    });
+    bar.finish_and_clear();
+    let reports: Vec<FittedScan> = results.into_iter().collect::<Result<_, _>>()?;
+    let text = match arguments.output.format {
+        TableFormat::Text => result::text(&reports, arguments.minima),
+        TableFormat::Json => result::json(&reports),
+        TableFormat::Csv => result::csv(&reports, arguments.minima),
+    };
+    if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
+        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+        picture::save(
+            path,
+            &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
+        )?;
+    }
+    arguments.output.deliver(&text, streams.output)?;
+    left_out::note(&measurements, streams.errors);
+    Ok(())
+}
+
+/// A bar over the scans if there are several, a clock if one takes long.
+fn progress(shown: bool, options: &FitOptions, scans: usize) -> ProgressBar {
+    let long = options.method == Method::Paper;
+    if !shown || (scans == 1 && !long) {
+        return ProgressBar::hidden();
+    }
+    if scans == 1 {
+        let clock = ProgressBar::new_spinner().with_message(format!("{} starts", options.starts()));
+        clock.enable_steady_tick(Duration::from_millis(100));
+        return clock;
+    }
+    let bar = ProgressBar::new(scans as u64);
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} scans, {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}

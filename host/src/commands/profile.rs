@@ -1,0 +1,131 @@
+//! `brdfit profile`: which values of a parameter a scan allows.
+
+mod findings;
+mod json;
+mod text;
+
+use std::path::PathBuf;
+
+use brdfit_core::brdf::{NAMES, has};
+use clap::Args;
+use rayon::prelude::*;
+
+use crate::analysis::bootstrap::bootstrap;
+use crate::analysis::choose;
+use crate::analysis::profile::{Profile, profile};
+use crate::engine::{FitError, FitOptions, robust};
+use crate::error::Error;
+use crate::input::{self, ReadOptions, left_out};
+use crate::options::SearchArguments;
+use crate::output::{Format, OutputArguments};
+use crate::plot::{self, picture};
+use crate::streams::Streams;
+use crate::terms::term_names;
+use findings::Findings;
+
+/// Shows which values of a parameter a scan allows: the cost over it, minimised over the others
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  brdfit profile paint.csv --parameter n --plot n.svg")]
+pub struct Arguments {
+    /// A scan, as `brdfit fit` reads it; - is standard input
+    #[arg(value_name = "SCAN")]
+    scan: PathBuf,
+    /// Parameter to profile; repeatable [default: all that are not fixed]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    parameter: Vec<String>,
+    /// Adds percentiles over N copies of the fitted scan with new noise
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    bootstrap: Option<u32>,
+    /// Takes the thresholds of the intervals from N copies of the scan at each end, in place of the F test's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=1_000_000))]
+    calibrate: Option<u32>,
+    #[command(flatten)]
+    search: SearchArguments,
+    #[command(flatten)]
+    output: OutputArguments,
+    /// Draws the profiles, as SVG or PNG
+    #[arg(long, value_name = "FILE", value_parser = picture::name)]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// The first thing that is wrong with options, file or scan.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let options = arguments.search.fit_options()?;
+    let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
+    let pool = arguments.search.pool()?;
+    let samples = &measurement.samples;
+    let found = pool.install(|| -> Result<_, FitError> {
+        let (options, outcome, _) = choose::fit(samples, &options)?;
+        let samples = &robust::kept(samples, &outcome)[..];
+        let options = FitOptions {
+            robust: false,
+            ..options
+        };
+        let parameters = match parameters(&arguments.parameter, &options) {
+            Ok(parameters) => parameters,
+            Err(error) => return Ok(Err(error)),
+        };
+        let each = parameters.par_iter();
+        let calibrated = arguments.calibrate.unwrap_or(0);
+        let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
+        let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
+        let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
+        Ok(Ok((outcome, profiles, copies)))
+    });
+    let (outcome, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let fail = |what: &str| Error::new(what).in_file(measurement.label());
+    if !outcome.cost.is_finite() {
+        return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
+    }
+    if outcome.uncertainty.degrees_of_freedom == 0 {
+        return Err(
+            fail("as many parameters as samples: every value may fit").help("measure more, or --fix parameters")
+        );
+    }
+    let findings = Findings {
+        name: measurement.label(),
+        outcome,
+        profiles,
+        copies,
+        calibrated: arguments.calibrate.unwrap_or(0),
+        seed: options.seed,
+    };
+    let written = match arguments.output.format {
+        Format::Text => text::write(&findings),
+        Format::Json => json::write(&findings),
+    };
+    if let Some(path) = &arguments.plot {
+        picture::save(path, &plot::profile_svg(&findings.name, &findings.profiles))?;
+    }
+    arguments.output.deliver(&written, streams.output)?;
+    left_out::note(&[measurement], streams.errors);
+    Ok(())
+}
+
+/// The places of the parameters asked for.
+fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Error> {
+    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
+    let free = |index: usize| has(options.terms, index) && lower[index] < upper[index];
+    let all: Vec<usize> = (0..NAMES.len()).filter(|&index| free(index)).collect();
+    let known = || all.iter().map(|&index| NAMES[index]).collect::<Vec<_>>().join(", ");
+    if names.is_empty() {
+        return Ok(all);
+    }
+    let one = |name: &String| {
+        let index = all.iter().copied().find(|&index| NAMES[index] == name.trim());
+        index.ok_or_else(|| {
+            let terms = term_names(options.terms).join(",");
+            Error::new(format!(
+                "'{}' is no free parameter of the terms {terms}",
+                crate::error::shown(name)
+            ))
+            .help(format!("the free parameters are {}", known()))
+        })
+    };
+    names.iter().map(one).collect()
+}

@@ -1,0 +1,126 @@
+//! Profiles as JSON.
+
+use brdfit_core::brdf::NAMES;
+use serde::Serialize;
+
+use super::findings::Findings;
+use crate::analysis::bootstrap::quantile;
+use crate::analysis::profile::calibrate::LEVELS;
+use crate::analysis::profile::{Interval, Profile};
+
+#[derive(Serialize)]
+struct Document<'a> {
+    file: &'a str,
+    samples: usize,
+    /// Standard deviation of a residual of ln f.
+    residual_scale: f64,
+    degrees_of_freedom: usize,
+    parameters: Vec<Parameter>,
+    bootstrap: Option<Bootstrap>,
+    /// Copies at each end of an interval whose thresholds are measured; null for those of the F test.
+    calibrated: Option<u32>,
+}
+
+#[derive(Serialize)]
+struct Parameter {
+    name: &'static str,
+    best: f64,
+    /// Null where it is on a bound or not seen.
+    stderr: Option<f64>,
+    intervals: [Ends; 2],
+    points: Vec<At>,
+}
+
+#[derive(Serialize)]
+struct Ends {
+    level: f64,
+    low: f64,
+    low_at_bound: bool,
+    high: f64,
+    high_at_bound: bool,
+}
+
+#[derive(Serialize)]
+struct At {
+    value: f64,
+    /// Sum of squared residuals.
+    cost: f64,
+    /// Above the best, over the variance of a residual.
+    rise: f64,
+    /// In the order rho_d, rho_s, rho_v, m, n, kappa.
+    parameters: [f64; 6],
+}
+
+#[derive(Serialize)]
+struct Bootstrap {
+    copies: usize,
+    seed: u64,
+    parameters: Vec<Percentiles>,
+}
+
+#[derive(Serialize)]
+struct Percentiles {
+    name: &'static str,
+    median: f64,
+    intervals: [[f64; 2]; 2],
+}
+
+/// One object.
+pub fn write(findings: &Findings) -> String {
+    let known = &findings.outcome.uncertainty;
+    let document = Document {
+        file: &findings.name,
+        samples: findings.outcome.samples,
+        residual_scale: known.scale,
+        degrees_of_freedom: known.degrees_of_freedom,
+        parameters: findings
+            .profiles
+            .iter()
+            .map(|profile| parameter(profile, known.stderr))
+            .collect(),
+        calibrated: Some(findings.calibrated).filter(|&copies| copies > 0),
+        bootstrap: (!findings.copies.is_empty()).then(|| Bootstrap {
+            copies: findings.copies.len(),
+            seed: findings.seed,
+            parameters: findings
+                .profiles
+                .iter()
+                .map(|profile| percentiles(findings, profile.index))
+                .collect(),
+        }),
+    };
+    // Only maps with other keys than strings, and failing writers, can make this fail.
+    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+}
+
+fn parameter(profile: &Profile, stderr: [f64; 6]) -> Parameter {
+    let ends = |interval: Interval| Ends {
+        level: interval.level,
+        low: interval.low.value,
+        low_at_bound: interval.low.at_bound,
+        high: interval.high.value,
+        high_at_bound: interval.high.at_bound,
+    };
+    let points = profile.points.iter().map(|point| At {
+        value: point.value,
+        cost: point.cost,
+        rise: profile.rise(point),
+        parameters: point.params.to_array(),
+    });
+    Parameter {
+        name: NAMES[profile.index],
+        best: profile.best.value,
+        stderr: Some(stderr[profile.index]).filter(|&error| error > 0.0),
+        intervals: profile.intervals.map(ends),
+        points: points.collect(),
+    }
+}
+
+fn percentiles(findings: &Findings, index: usize) -> Percentiles {
+    let values: Vec<f64> = findings.copies.iter().map(|params| params.to_array()[index]).collect();
+    Percentiles {
+        name: NAMES[index],
+        median: quantile(&values, 0.5),
+        intervals: LEVELS.map(|level| [0.5 - 0.5 * level, 0.5 + 0.5 * level].map(|share| quantile(&values, share))),
+    }
+}

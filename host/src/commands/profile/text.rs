@@ -1,0 +1,83 @@
+//! Profiles as a page for people.
+
+use std::fmt::Write;
+
+use brdfit_core::brdf::NAMES;
+
+use super::findings::Findings;
+use crate::analysis::bootstrap::quantile;
+use crate::analysis::profile::calibrate::LEVELS;
+use crate::analysis::profile::{End, Interval};
+use crate::number::{percent, short, significant};
+
+/// The table of the intervals.
+pub fn write(findings: &Findings) -> String {
+    let known = &findings.outcome.uncertainty;
+    let mut page = format!(
+        "{}\n  {} samples, residual {}, {} degrees of freedom\n\n",
+        findings.name,
+        findings.outcome.samples,
+        percent(known.scale),
+        known.degrees_of_freedom
+    );
+    let row = |page: &mut String, cells: [&str; 5]| {
+        let [name, best, error, one, two] = cells;
+        let line = format!("  {name:<9} {best:>11}  {error:>9}  {one:<26} {two}");
+        let _ = writeln!(page, "{}", line.trim_end());
+    };
+    row(&mut page, ["", "best", "+-", "68 % interval", "95 % interval"]);
+    let mut notes = String::new();
+    for profile in &findings.profiles {
+        let index = profile.index;
+        let [one, two] = profile.intervals.map(|interval| shown(&interval));
+        let error = known.stderr[index];
+        let error = if error > 0.0 { short(error) } else { "-".into() };
+        row(&mut page, [NAMES[index], &six(profile.best.value), &error, &one, &two]);
+        if profile.best.cost < findings.outcome.cost * (1.0 - 1e-6) {
+            let _ = writeln!(
+                notes,
+                "  The profile of {} met a better fit than the search: MSE^2 is lower by {}.",
+                NAMES[index],
+                percent(1.0 - profile.best.cost / findings.outcome.cost)
+            );
+        }
+    }
+    if !findings.copies.is_empty() {
+        let _ = writeln!(
+            page,
+            "\n  bootstrap: {} copies, seed {}",
+            findings.copies.len(),
+            findings.seed
+        );
+        for profile in &findings.profiles {
+            let index = profile.index;
+            let values: Vec<f64> = findings.copies.iter().map(|params| params.to_array()[index]).collect();
+            let [one, two] = LEVELS.map(|level| {
+                let (low, high) = (
+                    quantile(&values, 0.5 - 0.5 * level),
+                    quantile(&values, 0.5 + 0.5 * level),
+                );
+                format!("{} to {}", six(low), six(high))
+            });
+            row(&mut page, [NAMES[index], &six(quantile(&values, 0.5)), "", &one, &two]);
+        }
+    }
+    page.push('\n');
+    page += &notes;
+    page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by ";
+    page += &match findings.calibrated {
+        0 => "an F test.\n".to_string(),
+        copies => format!("{copies} copies, seed {}.\n", findings.seed),
+    };
+    page += "  (bound) marks an end that the bound of the parameter sets, not the data.\n";
+    page
+}
+
+fn shown(interval: &Interval) -> String {
+    let end = |end: End| six(end.value) + if end.at_bound { " (bound)" } else { "" };
+    format!("{} to {}", end(interval.low), end(interval.high))
+}
+
+fn six(x: f64) -> String {
+    significant(x, 4)
+}

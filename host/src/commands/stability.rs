@@ -1,0 +1,64 @@
+//! `brdfit stability`: how much of the arithmetic's precision reaches the answer, and whether f32 is enough.
+
+mod text;
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::analysis::stability::assess::assess;
+use crate::analysis::stability::built_in;
+use crate::error::Error;
+use crate::input::{self, ReadOptions, left_out};
+use crate::output::{Format, OutputArguments};
+use crate::streams::Streams;
+use crate::terms::terms;
+
+/// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  brdfit stability paint.csv")]
+pub struct Arguments {
+    /// A scan, as `brdfit fit` reads it; - is standard input [default: the built-in cases]
+    #[arg(value_name = "SCAN")]
+    scan: Option<PathBuf>,
+    /// Terms of the model, of diffuse,surface,volume,absorbing
+    #[arg(long, value_name = "LIST", default_value = "all", requires = "scan")]
+    terms: String,
+    #[command(flatten)]
+    output: OutputArguments,
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// The scan can not be read or fitted, or the output not written.
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let text = match &arguments.scan {
+        None => {
+            let cases = built_in();
+            match arguments.output.format {
+                Format::Text => text::write(&cases),
+                Format::Json => json(&cases),
+            }
+        }
+        Some(path) => {
+            let measurement = input::read_one(path, &arguments.read, streams.input)?;
+            let terms = terms(&arguments.terms)?;
+            let case = assess(&measurement.label(), &measurement.samples, terms)
+                .map_err(|error| input::explain(&measurement, error))?;
+            left_out::note(&[measurement], streams.errors);
+            match arguments.output.format {
+                Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
+                Format::Json => json(&case),
+            }
+        }
+    };
+    arguments.output.deliver(&text, streams.output)
+}
+
+fn json(value: &impl serde::Serialize) -> String {
+    // Only maps with other keys than strings, and failing writers, can make this fail.
+    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+}

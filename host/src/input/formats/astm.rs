@@ -1,0 +1,235 @@
+//! ASTM E1392 and E2387 text: `KEY value` lines up to `VARS`, then rows of comma-separated numbers, angles in radians.
+
+use crate::error::{Error, shown};
+use crate::input::columns::plain;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::rows::number;
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "astm",
+    title: "ASTM E1392",
+    about: "ASTM E1392 or E2387 text",
+    reader: Reader::Text { is, read },
+};
+
+/// Plain names of the angles.
+const THETA_I: [&str; 1] = ["thetai"];
+const THETA_S: [&str; 2] = ["thetas", "thetar"];
+const PHI_I: [&str; 1] = ["phii"];
+const PHI_S: [&str; 2] = ["phis", "phir"];
+
+/// True if the text begins as these files do.
+fn is(text: &str) -> bool {
+    vars(text).is_some()
+}
+
+/// The line of `VARS` and the names in it.
+fn vars(text: &str) -> Option<(usize, &str)> {
+    let lines = text.lines().enumerate();
+    lines
+        .take_while(|(_, line)| line.is_empty() || line.starts_with(|c: char| c.is_ascii_uppercase()))
+        .find_map(|(place, line)| Some((place, line.strip_prefix("VARS")?.trim())))
+}
+
+/// One scan for each column of values.
+///
+/// # Errors
+/// A variable or a number is missing, or there are other than `NUM_POINTS` rows.
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+    let Some((header, vars)) = vars(text) else {
+        return Err(Error::new("there is no line VARS").help("name the columns in it, such as VARS theta_i,theta_s,R"));
+    };
+    let mut names: Vec<&str> = vars.split(',').map(str::trim).collect();
+    let rows = || {
+        (1..)
+            .zip(text.lines())
+            .skip(header + 1)
+            .filter(|(_, row)| !row.trim().is_empty())
+    };
+    if let Some((_, row)) = rows().next() {
+        name_forgotten(&mut names, row.split(',').count());
+    }
+    let place = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&plain(name).as_str()));
+    let missing = |name: &str| {
+        Error::new(format!("VARS has no {name}"))
+            .at_line(header as u64 + 1)
+            .help("it must name theta_i, theta_s and a value")
+    };
+    let theta_i = place(&THETA_I).ok_or_else(|| missing("theta_i"))?;
+    let theta_s = place(&THETA_S).ok_or_else(|| missing("theta_s"))?;
+    let (phi_i, phi_s) = (place(&PHI_I), place(&PHI_S));
+    let angles = [Some(theta_i), Some(theta_s), phi_i, phi_s];
+    let values: Vec<usize> = (0..names.len()).filter(|k| !angles.contains(&Some(*k))).collect();
+    if values.is_empty() {
+        return Err(missing("column of values"));
+    }
+    let mut scans: Vec<RawScan> = values
+        .iter()
+        .map(|&value| {
+            let column = |place: usize| place as u64 + 1;
+            RawScan {
+                names: vec![names[value].to_string()],
+                angles: Angles::Rad,
+                quantity: Quantity::Brdf,
+                places: Places {
+                    theta_i: Some(column(theta_i)),
+                    theta_s: Some(column(theta_s)),
+                    phi: phi_s.map(column),
+                    value: Some(column(value)),
+                    weight: None,
+                },
+                rows: Vec::new(),
+            }
+        })
+        .collect();
+    for (line, row) in rows() {
+        let cells: Vec<&str> = row.split(',').map(str::trim).collect();
+        let read = || {
+            if cells.len() != names.len() {
+                return Err(Error::new(format!(
+                    "the row has {} numbers, VARS names {}",
+                    cells.len(),
+                    names.len()
+                ))
+                .help("give every row the numbers that VARS names"));
+            }
+            let angle = |place: Option<usize>| place.map_or(Ok(0.0), |place| number(&cells, place));
+            let delta_phi = match phi_s {
+                Some(_) => Some(angle(phi_s)? - angle(phi_i)?),
+                None => None,
+            };
+            for (scan, &value) in scans.iter_mut().zip(&values) {
+                scan.rows.push(Row {
+                    theta_i: number(&cells, theta_i)?,
+                    theta_s: number(&cells, theta_s)?,
+                    delta_phi,
+                    value: number(&cells, value)?,
+                    weight: Weight::Unknown,
+                    line,
+                });
+            }
+            Ok(())
+        };
+        let mut read = read;
+        read().map_err(|error: Error| error.at_line(line))?;
+    }
+    check_count(text, header, scans[0].rows.len())?;
+    Ok(scans)
+}
+
+/// Names the azimuths where VARS forgets them and the rows have them: each stands behind its polar angle.
+///
+/// Instruments write such files; with one number more than names, and both azimuths without a name, nothing tells which it is.
+fn name_forgotten(names: &mut Vec<&str>, numbers: usize) {
+    let place = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&plain(name).as_str()));
+    let (phi_i, phi_s) = (place(&PHI_I), place(&PHI_S));
+    let forgotten = [(phi_s, place(&THETA_S), "phi_s"), (phi_i, place(&THETA_I), "phi_i")];
+    let mut forgotten: Vec<(usize, &str)> = forgotten
+        .into_iter()
+        .filter(|(phi, _, _)| phi.is_none())
+        .filter_map(|(_, theta, name)| Some((theta? + 1, name)))
+        .collect();
+    if numbers != names.len() + forgotten.len() {
+        return;
+    }
+    // From the back, so that the places before stay.
+    forgotten.sort();
+    for (place, name) in forgotten.into_iter().rev() {
+        names.insert(place, name);
+    }
+}
+
+/// Are there as many rows as the header promises?
+fn check_count(text: &str, header: usize, rows: usize) -> Result<(), Error> {
+    for (line, row) in (1..).zip(text.lines()).take(header) {
+        let Some(count) = row.strip_prefix("NUM_POINTS").map(str::trim) else {
+            continue;
+        };
+        match count.parse::<usize>() {
+            Ok(count) if count == rows => {}
+            Ok(count) => {
+                return Err(
+                    Error::new(format!("NUM_POINTS promises {count} rows, and there are {rows}"))
+                        .at_line(line)
+                        .help("is the file cut off? If not, correct the number"),
+                );
+            }
+            Err(_) => {
+                return Err(Error::new(format!("NUM_POINTS '{}' is no count", shown(count)))
+                    .at_line(line)
+                    .help("give the number of rows"));
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
+
+    const TEXT: &str = "LAB_NAME nowhere\r\n\r\nNUM_POINTS 2\r\nVARS theta_i,phi_i,theta_s,phi_s,R,G\r\n\r\n\
+        0.5,0.25,0.4,3.391593,0.1,0.2\r\n0.5,0.25,0.3,0.75,0.3,-0.4\r\n";
+
+    #[test]
+    fn columns_are_scans_and_azimuths_differences() {
+        assert!(is(TEXT));
+        let scans = read(TEXT).unwrap();
+        assert_eq!((scans[0].names[0].as_str(), scans[1].names[0].as_str()), ("R", "G"));
+        let second = scans[1].rows[1];
+        assert_eq!(
+            (second.theta_i, second.theta_s, second.delta_phi),
+            (0.5, 0.3, Some(0.5))
+        );
+        assert_eq!((second.value, second.line), (-0.4, 7));
+        assert_eq!(
+            scans[0].angles.azimuth(scans[0].rows[0].delta_phi.unwrap()),
+            std::f64::consts::PI
+        );
+    }
+
+    #[test]
+    fn a_file_that_is_cut_off_is_refused() {
+        let cut = TEXT.replace("NUM_POINTS 2", "NUM_POINTS 3");
+        let error = read(&cut).unwrap_err();
+        assert_eq!(
+            (error.line, error.what.contains("promises 3 rows, and there are 2")),
+            (Some(3), true)
+        );
+        let error = read(&TEXT.replace(",-0.4", "")).unwrap_err();
+        assert_eq!(
+            (error.line, error.what.contains("5 numbers, VARS names 6")),
+            (Some(7), true)
+        );
+        let error = read(&TEXT.replace("-0.4", "oops")).unwrap_err();
+        assert_eq!((error.line, error.column), (Some(7), Some(6)));
+        assert!(
+            read(&TEXT.replace("theta_s", "x"))
+                .unwrap_err()
+                .what
+                .contains("no theta_s")
+        );
+        assert!(!is("theta_i,theta_s,brdf\n1,2,3\n"));
+    }
+
+    #[test]
+    fn azimuths_that_vars_forgets_stand_behind_their_polar_angles() {
+        let rows = read(TEXT).unwrap()[0].rows.clone();
+        for vars in ["theta_i,phi_i,theta_s", "theta_i,theta_s,phi_s", "theta_i,theta_s"] {
+            let text = TEXT.replace("theta_i,phi_i,theta_s,phi_s", vars);
+            assert_eq!(read(&text).unwrap()[0].rows, rows, "{vars}");
+        }
+        // In plane nothing is forgotten; one number more could be either azimuth.
+        let in_plane = "VARS theta_i,theta_s,R\n0.5,-0.4,0.1\n";
+        assert_eq!(read(in_plane).unwrap()[0].rows[0].delta_phi, None);
+        assert!(read(&in_plane.replace("0.1", "0.1,2")).is_err());
+    }
+}

@@ -1,0 +1,280 @@
+//! EURAMET BiRD universal BRDF JSON: named arrays with units, one value each for each sample, and uncertainties.
+
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+use crate::error::{Error, shown};
+use crate::input::bytes::Lines;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::units::{Angles, Quantity};
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "bird",
+    title: "BiRD JSON",
+    about: "EURAMET BiRD universal BRDF JSON",
+    reader: Reader::Text { is, read },
+};
+
+/// True of a JSON object.
+fn is(text: &str) -> bool {
+    text.trim_start().starts_with('{')
+}
+
+#[derive(Deserialize)]
+struct File<'a> {
+    #[serde(borrow)]
+    data: Data<'a>,
+}
+
+#[derive(Deserialize)]
+struct Data<'a> {
+    #[serde(borrow)]
+    theta_i: Variable<'a>,
+    phi_i: Variable<'a>,
+    theta_r: Variable<'a>,
+    phi_r: Variable<'a>,
+    #[serde(rename = "BRDF")]
+    brdf: Variable<'a>,
+    #[serde(rename = "uBRDF")]
+    u_brdf: Option<Variable<'a>>,
+    wavelength_i: Option<Variable<'a>>,
+    polarization_i: Option<Variable<'a>>,
+    polarization_r: Option<Variable<'a>>,
+}
+
+/// A named array; polarisations have a notation in place of a unit.
+#[derive(Deserialize)]
+struct Variable<'a> {
+    #[serde(default)]
+    unit: String,
+    #[serde(borrow)]
+    values: Vec<&'a RawValue>,
+    uncertainty: Option<&'a RawValue>,
+}
+
+#[derive(Deserialize)]
+struct Uncertainty {
+    value: f64,
+    unit: String,
+}
+
+/// One scan for each wavelength and polarisation; uncertainties of the BRDF are standard deviations.
+///
+/// # Errors
+/// It is no JSON, a required array is missing, arrays differ in length, or a unit or a number is not understood.
+fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+    let file: File = serde_json::from_str(text).map_err(|error| {
+        let what = error.to_string();
+        let what = what.split(" at line ").next().unwrap_or(&what).to_string();
+        Error::new(format!("as BiRD JSON: {what}"))
+            .at_line(error.line() as u64)
+            .at_column(error.column() as u64)
+            .help("data needs theta_i, phi_i, theta_r, phi_r and BRDF, each with unit and values")
+    })?;
+    let data = &file.data;
+    let lines = Lines::new(text);
+    let variables = [
+        ("theta_i", Some(&data.theta_i)),
+        ("phi_i", Some(&data.phi_i)),
+        ("theta_r", Some(&data.theta_r)),
+        ("phi_r", Some(&data.phi_r)),
+        ("uBRDF", data.u_brdf.as_ref()),
+        ("wavelength_i", data.wavelength_i.as_ref()),
+        ("polarization_i", data.polarization_i.as_ref()),
+        ("polarization_r", data.polarization_r.as_ref()),
+    ];
+    let count = data.brdf.values.len();
+    for (name, variable) in variables {
+        if let Some(variable) = variable.filter(|variable| variable.values.len() != count) {
+            let have = variable.values.len();
+            return Err(Error::new(format!("{name} has {have} values, BRDF {count}"))
+                .help("give each array one value for each sample"));
+        }
+    }
+    let weight = uncertainty(data, text, &lines)?;
+    let mut scans: Vec<RawScan> = Vec::new();
+    for k in 0..count {
+        let number = |variable: &Variable| number(variable.values[k], text, &lines);
+        let angle = |name: &str, variable: &Variable| degrees(name, &variable.unit, number(variable)?);
+        let row = Row {
+            theta_i: angle("theta_i", &data.theta_i)?,
+            theta_s: angle("theta_r", &data.theta_r)?,
+            delta_phi: Some(angle("phi_r", &data.phi_r)? - angle("phi_i", &data.phi_i)?),
+            value: number(&data.brdf)?,
+            weight: weight(k)?,
+            line: lines.place(text, data.brdf.values[k].get()).0,
+        };
+        let names = names(data, k);
+        match scans.iter_mut().find(|scan| scan.names == names) {
+            Some(scan) => scan.rows.push(row),
+            None => scans.push(RawScan {
+                names,
+                angles: Angles::Deg,
+                quantity: Quantity::Brdf,
+                places: Places::default(),
+                rows: vec![row],
+            }),
+        }
+    }
+    if scans.is_empty() {
+        return Err(Error::new("BRDF has no values").help("give one for each sample"));
+    }
+    Ok(scans)
+}
+
+/// The wavelength and the polarisations of sample `k`.
+fn names(data: &Data, k: usize) -> Vec<String> {
+    let word = |raw: &RawValue| raw.get().replace(['"', '[', ']'], "").replace(',', " ");
+    let tidy = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let wavelength = data
+        .wavelength_i
+        .iter()
+        .map(|variable| format!("{} {}", word(variable.values[k]), variable.unit));
+    let polarisations = [("", &data.polarization_i), ("to ", &data.polarization_r)];
+    let polarisations = polarisations
+        .into_iter()
+        .filter_map(|(before, variable)| Some(format!("{before}{}", word(variable.as_ref()?.values[k]))));
+    wavelength.chain(polarisations).map(tidy).collect()
+}
+
+/// The uncertainty of sample `k`: its own, or that of all.
+fn uncertainty<'a>(
+    data: &'a Data,
+    text: &'a str,
+    lines: &'a Lines,
+) -> Result<impl Fn(usize) -> Result<Weight, Error> + 'a, Error> {
+    let whole: Option<Uncertainty> = match (&data.u_brdf, data.brdf.uncertainty) {
+        (None, Some(raw)) => Some(serde_json::from_str(raw.get()).map_err(|error| {
+            let (line, _) = lines.place(text, raw.get());
+            Error::new(format!("the uncertainty of BRDF: {error}"))
+                .at_line(line)
+                .help("give value and unit")
+        })?),
+        _ => None,
+    };
+    let unit = match (&data.u_brdf, &whole) {
+        (Some(variable), _) => variable.unit.as_str(),
+        (None, Some(whole)) => whole.unit.as_str(),
+        (None, None) => "sr^-1",
+    };
+    if !["sr^-1", "1/sr", "%"].contains(&unit) {
+        return Err(
+            Error::new(format!("the unit of the uncertainty of BRDF is '{}'", shown(unit)))
+                .help("give sr^-1, 1/sr or %"),
+        );
+    }
+    let relative = unit == "%";
+    Ok(move |k: usize| {
+        let x = match (&data.u_brdf, &whole) {
+            (Some(variable), _) => number(variable.values[k], text, lines)?,
+            (None, Some(whole)) => whole.value,
+            (None, None) => return Ok(Weight::Unknown),
+        };
+        Ok(if relative {
+            Weight::RelativeSigma(x / 100.0)
+        } else {
+            Weight::Sigma(x)
+        })
+    })
+}
+
+/// The number at a place of the text; null is no value.
+fn number(raw: &RawValue, text: &str, lines: &Lines) -> Result<f64, Error> {
+    if raw.get() == "null" {
+        return Ok(f64::NAN);
+    }
+    raw.get().parse().map_err(|_| {
+        let (line, column) = lines.place(text, raw.get());
+        Error::new(format!("'{}' is not a number", shown(raw.get())))
+            .at_line(line)
+            .at_column(column)
+            .help("write a number, or null and use --drop-invalid if there is no value")
+    })
+}
+
+fn degrees(name: &str, unit: &str, angle: f64) -> Result<f64, Error> {
+    match unit {
+        "deg" | "°" => Ok(angle),
+        "rad" => Ok(angle.to_degrees()),
+        _ => Err(Error::new(format!("the unit of {name} is '{}'", shown(unit))).help("give deg, ° or rad")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<RawScan>, Error> {
+        super::read(text, &ReadOptions::default())
+    }
+
+    const TEXT: &str = r#"{"metadata": {"any": [1]}, "data": {
+"wavelength_i": {"unit": "nm", "values": [550, 650, 550]},
+"polarization_i": {"notation": "sp", "values": ["s", "s", "s"]},
+"theta_i": {"unit": "rad", "values": [0.5, 0.5, 0.5]}, "phi_i": {"unit": "deg", "values": [10, 10, 10]},
+"theta_r": {"unit": "°", "values": [1, 2, 3]}, "phi_r": {"unit": "deg", "values": [190, 10, 100]},
+"BRDF": {"unit": "sr^-1", "values": [0.5, 0.25,
+ null]},
+"uBRDF": {"unit": "%", "values": [1, 2, 3]}
+}}"#;
+
+    #[test]
+    fn wavelengths_and_polarisations_are_scans() {
+        assert!(is(TEXT));
+        let scans = read(TEXT).unwrap();
+        assert_eq!(scans.len(), 2);
+        assert_eq!(
+            (scans[0].names.join(" "), scans[1].names.join(" ")),
+            ("550 nm s".into(), "650 nm s".into())
+        );
+        let [first, second] = scans[0].rows[..] else { panic!() };
+        assert_eq!(
+            (first.theta_i, first.theta_s, first.delta_phi),
+            (0.5f64.to_degrees(), 1.0, Some(180.0))
+        );
+        assert_eq!(
+            (first.value, first.weight, first.line),
+            (0.5, Weight::RelativeSigma(0.01), 6)
+        );
+        assert!(second.value.is_nan() && second.delta_phi == Some(90.0) && second.line == 7);
+        let stokes = TEXT.replace(r#"["s", "s", "s"]"#, "[[1,1,0,0], [1, -1, 0, 0], [1,1,0,0]]");
+        assert_eq!(read(&stokes).unwrap()[1].names, ["650 nm", "1 -1 0 0"]);
+    }
+
+    #[test]
+    fn one_uncertainty_may_hold_for_all() {
+        let (head, _) = TEXT.split_once(",\n\"uBRDF\"").unwrap();
+        let weight = |uncertainty: &str| {
+            let text = head.replace(" null]}", &format!(" 1], \"uncertainty\": {uncertainty}}}")) + "}}";
+            read(&text).map(|scans| scans[0].rows[0].weight)
+        };
+        assert_eq!(
+            weight(r#"{"value": 0.01, "unit": "sr^-1"}"#).unwrap(),
+            Weight::Sigma(0.01)
+        );
+        assert_eq!(
+            weight(r#"{"value": 2, "unit": "%"}"#).unwrap(),
+            Weight::RelativeSigma(0.02)
+        );
+        assert!(weight(r#"{"value": 2, "unit": "dB"}"#).is_err() && weight("3").is_err());
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        for (from, to, line, column, what) in [
+            ("0.25", "\"x\"", Some(6), Some(43), "is not a number"),
+            ("\"theta_r\"", "\"theta_x\"", None, None, "missing field `theta_r`"),
+            ("[190, 10, 100]", "[190, 10]", None, None, "phi_r has 2 values, BRDF 3"),
+            ("\"rad\"", "\"grad\"", None, None, "unit of theta_i is 'grad'"),
+            ("}}", "}", Some(9), None, "EOF"),
+        ] {
+            let error = read(&TEXT.replacen(from, to, 1)).unwrap_err();
+            assert!(error.what.contains(what), "{error}");
+            assert!(line.is_none_or(|line| error.line == Some(line)), "{error}");
+            assert!(column.is_none_or(|column| error.column == Some(column)), "{error}");
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! What is written of a fitted scan: pages for people, JSON and tables for programs.
+
+mod csv;
+pub mod json;
+mod text;
+pub mod words;
+
+pub use csv::csv;
+pub use json::json;
+pub use text::text;

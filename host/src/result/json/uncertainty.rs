@@ -1,0 +1,139 @@
+//! Uncertainty and derived quantities as parts of the JSON contract; what is infinite or not there is null.
+
+use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::uncertainty::Place;
+use serde::Serialize;
+
+use crate::analysis::derived::{Derived, Value};
+use crate::analysis::undetermined::undetermined;
+use crate::engine::uncertainty::Uncertainty;
+use crate::result::words::sentence;
+
+/// What is known of the parameters.
+#[derive(Serialize)]
+pub struct Known {
+    /// Standard deviation of a residual of ln f.
+    residual_scale: f64,
+    degrees_of_freedom: usize,
+    /// Of J'J, columns scaled, over the parameters inside their bounds.
+    condition: f64,
+    /// Null where a parameter has none.
+    stderr: ByName<Option<f64>>,
+    /// As if no bound held another parameter.
+    stderr_without_bounds: ByName<Option<f64>>,
+    correlation: ByName<ByName<f64>>,
+    on_bound: Vec<OnBound>,
+    undetermined: Vec<Open>,
+}
+
+/// One for each parameter.
+#[derive(Serialize)]
+struct ByName<T> {
+    rho_d: T,
+    rho_s: T,
+    rho_v: T,
+    m: T,
+    n: T,
+    kappa: T,
+}
+
+fn by_name<T>([rho_d, rho_s, rho_v, m, n, kappa]: [T; 6]) -> ByName<T> {
+    ByName {
+        rho_d,
+        rho_s,
+        rho_v,
+        m,
+        n,
+        kappa,
+    }
+}
+
+#[derive(Serialize)]
+struct OnBound {
+    parameter: &'static str,
+    bound: &'static str,
+    /// In standard errors, positive towards larger values.
+    push: f64,
+}
+
+#[derive(Serialize)]
+struct Open {
+    parameters: Vec<&'static str>,
+    through: Vec<&'static str>,
+    sentence: String,
+}
+
+/// At one angle of incidence; angles in degrees.
+#[derive(Serialize)]
+pub struct AtAngle {
+    theta_i_deg: f64,
+    rho_s_f: Option<Number>,
+    rho_v_f: Option<Number>,
+    peak_theta_s_deg: Option<f64>,
+    peak_brdf_per_sr: Option<Number>,
+    width_deg: Option<Number>,
+    reflectance: Number,
+    energy_conserved: bool,
+}
+
+#[derive(Serialize)]
+struct Number {
+    value: f64,
+    stderr: f64,
+}
+
+fn number(Value { value, stderr }: Value) -> Number {
+    Number { value, stderr }
+}
+
+/// The uncertainty of one fit.
+pub fn known(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> Known {
+    let on_bound = (0..NAMES.len()).filter_map(|k| {
+        let bound = match known.places[k]? {
+            Place::Lower => "lower",
+            Place::Upper => "upper",
+            _ => return None,
+        };
+        let (parameter, push) = (NAMES[k], known.push[k]);
+        Some(OnBound { parameter, bound, push })
+    });
+    let open = undetermined(params, known, derived).into_iter().map(|what| Open {
+        sentence: sentence(&what),
+        through: what.through.iter().map(|&(product, _)| product).collect(),
+        parameters: what.parameters,
+    });
+    let has = |k: usize, place: Place| known.places[k] == Some(place);
+    Known {
+        residual_scale: known.scale,
+        degrees_of_freedom: known.degrees_of_freedom,
+        condition: known.condition,
+        stderr: by_name(std::array::from_fn(|k| {
+            has(k, Place::Inside).then_some(known.stderr[k])
+        })),
+        stderr_without_bounds: by_name(std::array::from_fn(|k| {
+            let free = has(k, Place::Inside) || has(k, Place::Lower) || has(k, Place::Upper);
+            free.then_some(known.stderr_lifted[k])
+        })),
+        correlation: by_name(known.correlation.map(by_name)),
+        on_bound: on_bound.collect(),
+        undetermined: open.collect(),
+    }
+}
+
+/// The derived quantities of one angle of incidence.
+pub fn at_angle(at: &Derived) -> AtAngle {
+    let degrees = |width: Value| Number {
+        value: width.value.to_degrees(),
+        stderr: width.stderr.to_degrees(),
+    };
+    AtAngle {
+        theta_i_deg: at.theta_i.to_degrees(),
+        rho_s_f: at.rho_s_f.map(number),
+        rho_v_f: at.rho_v_f.map(number),
+        peak_theta_s_deg: at.peak.map(|peak| peak.theta_s.to_degrees()),
+        peak_brdf_per_sr: at.peak.map(|peak| number(peak.f)),
+        width_deg: at.peak.and_then(|peak| peak.width).map(degrees),
+        reflectance: number(at.reflectance),
+        energy_conserved: at.reflectance.value <= 1.0,
+    }
+}

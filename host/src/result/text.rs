@@ -1,0 +1,136 @@
+//! Reports as pages for people.
+
+mod choice;
+mod uncertainty;
+
+use std::fmt::Write;
+
+use brdfit_core::brdf::{NAMES, has};
+
+use crate::analysis::fit::{AngleOfIncidence, FittedScan};
+use crate::engine::Minimum;
+use crate::input::left_out;
+use crate::names;
+use crate::number::digits;
+use crate::terms::term_names;
+
+/// A page for people.
+pub fn text(reports: &[FittedScan], minima: bool) -> String {
+    let pages: Vec<String> = reports.iter().map(|report| page(report, minima)).collect();
+    pages.join("\n")
+}
+
+fn page(report: &FittedScan, minima: bool) -> String {
+    let (outcome, options) = (&report.outcome, &report.options);
+    let mut page = String::new();
+    let mut line = |text: String| page.push_str(&(text + "\n"));
+    line(match &report.scan {
+        Some(scan) => format!("{} [{scan}]", report.file),
+        None => report.file.clone(),
+    });
+    line(format!("  read as    {}", report.read_as));
+    line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
+    if let Some(summary) = left_out::summary(&report.left_out) {
+        line(format!("  left out   {summary}"));
+    }
+    line(format!(
+        "  search     {} of {} starts, seed {}, {}",
+        names::method(options.method),
+        options.starts(),
+        options.seed,
+        names::precision(options.precision),
+    ));
+    line(format!("  terms      {}", term_names(options.terms).join(", ")));
+    for (index, value) in outcome.params.to_array().into_iter().enumerate() {
+        if has(options.terms, index) {
+            let remark = uncertainty::remark(index, &outcome.uncertainty);
+            line(format!("    {:<8} {:>13}{remark}", NAMES[index], digits(value)));
+        }
+    }
+    line(format!("  MSE^2      {}", digits(outcome.mse2)));
+    line(format!(
+        "  rms ln f   {} ({:.2} %)",
+        digits(outcome.rms_ln),
+        outcome.rms_ln * 100.0
+    ));
+    if let Some(chi2) = report.chi2 {
+        let degrees = outcome.uncertainty.degrees_of_freedom;
+        line(format!("  chi^2      {} of {degrees} degrees of freedom", digits(chi2)));
+    }
+    if let Some(robust) = &outcome.robust {
+        line(format!(
+            "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",
+            digits(robust.scale)
+        ));
+    }
+    line(format!(
+        "  minima     {} distinct, improvement potential {:.1} %",
+        outcome.minima.len(),
+        outcome.improvement_potential * 100.0
+    ));
+    line(format!(
+        "  stop       {} ({})",
+        names::stop(outcome.stop),
+        names::stop_meaning(outcome.stop)
+    ));
+    line(format!(
+        "  passes     {} with derivatives, {} without",
+        outcome.evaluations.linearize, outcome.evaluations.cost
+    ));
+    if let Some(elapsed) = report.elapsed {
+        line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
+    }
+    for choice in report.choice.iter().flat_map(choice::lines) {
+        line(choice);
+    }
+    let weighted = report.read_as.weighted;
+    for known in uncertainty::lines(&outcome.params, &outcome.uncertainty, &report.derived, weighted) {
+        line(known);
+    }
+    if minima {
+        page += &minima_table(&outcome.minima);
+    }
+    page
+}
+
+/// The angles of incidence, with their rms where there are several.
+fn angles(angles: &[AngleOfIncidence]) -> String {
+    const LISTED: usize = 12;
+    let degrees = |angle: &AngleOfIncidence| digits(angle.theta_i.to_degrees());
+    match angles {
+        [] => String::new(),
+        [one] => format!(" at theta_i = {} deg", degrees(one)),
+        [first, .., last] if angles.len() > LISTED => format!(
+            " at {} angles of incidence from {} to {} deg",
+            angles.len(),
+            degrees(first),
+            degrees(last)
+        ),
+        several => several.iter().fold(String::new(), |mut list, angle| {
+            let _ = write!(
+                list,
+                "\n    theta_i {:>8} deg: {:>4} samples, rms ln f {}",
+                degrees(angle),
+                angle.samples,
+                digits(angle.rms_ln)
+            );
+            list
+        }),
+    }
+}
+
+fn minima_table(minima: &[Minimum]) -> String {
+    let mut table = format!("\n  {:>3} {:>12}", "#", "MSE^2");
+    for name in NAMES {
+        let _ = write!(table, " {name:>12}");
+    }
+    table += "  hits  first start\n";
+    for (place, minimum) in minima.iter().enumerate() {
+        let _ = write!(table, "  {:>3} {:>12}", place + 1, digits(minimum.mse2));
+        for value in minimum.params.to_array() {
+            let _ = write!(table, " {:>12}", digits(value));
+        }
+        let _ = writeln!(table, " {:>5} {:>12}", minimum.hits, minimum.first_start);
+    }
+    table
+}

@@ -1,0 +1,124 @@
+//! Uncertainty and derived quantities for the page of a fit.
+
+use brdfit_core::brdf::{NAMES, Params};
+use brdfit_core::uncertainty::Place;
+
+use crate::analysis::derived::{Derived, Value};
+use crate::analysis::undetermined::undetermined;
+use crate::engine::uncertainty::Uncertainty;
+use crate::number::{percent, short};
+use crate::result::words::{sentence, shown};
+
+/// Correlations from this on are listed.
+const STRONG: f64 = 0.9;
+/// Angles of incidence at most.
+const LISTED: usize = 12;
+
+/// What stands behind the value of parameter `index`.
+pub fn remark(index: usize, known: &Uncertainty) -> String {
+    match known.places[index] {
+        Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", short(known.stderr[index])),
+        Some(Place::Inside) | None => String::new(),
+        Some(Place::Lower | Place::Upper) => "  at its bound".into(),
+        Some(Place::Fixed) => "  fixed".into(),
+        Some(Place::Unseen) => "  no sample depends on it".into(),
+    }
+}
+
+/// Lines on what is known, what is not, and what follows.
+///
+/// With weights, the residual is in their unit and no part of f.
+pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived], weighted: bool) -> Vec<String> {
+    let mut lines = Vec::new();
+    if known.degrees_of_freedom == 0 {
+        lines.push("  known      no standard errors: as many parameters as samples".into());
+        return lines;
+    }
+    lines.push(format!(
+        "  known      residual {}, {} degrees of freedom, condition {}",
+        if weighted {
+            short(known.scale) + " of the weights' unit"
+        } else {
+            percent(known.scale)
+        },
+        known.degrees_of_freedom,
+        short(known.condition)
+    ));
+    for what in undetermined(params, known, derived) {
+        lines.push(format!("    {}", sentence(&what)));
+    }
+    for index in 0..NAMES.len() {
+        let (side, end) = match known.places[index] {
+            Some(Place::Lower) => ("below", "lower"),
+            Some(Place::Upper) => ("above", "upper"),
+            _ => continue,
+        };
+        let (name, push) = (NAMES[index], known.push[index].abs());
+        lines.push(if push < 0.05 {
+            format!("    {name} is on its {end} bound, where the data want it")
+        } else {
+            format!("    {name} is on its {end} bound; the data push {side} it, by {push:.1} standard errors")
+        });
+    }
+    let inside: Vec<usize> = known.inside().collect();
+    let pairs = inside.iter().flat_map(|&i| inside.iter().map(move |&j| (i, j)));
+    let strong: Vec<String> = pairs
+        .filter(|&(i, j)| i < j && known.correlation[i][j].abs() >= STRONG)
+        .map(|(i, j)| format!("{} and {} {:.3}", NAMES[i], NAMES[j], known.correlation[i][j]))
+        .collect();
+    if !strong.is_empty() {
+        lines.push(format!("    correlated: {}", strong.join(", ")));
+    }
+    lines.extend(table(derived));
+    lines
+}
+
+/// One row an angle of incidence.
+fn table(derived: &[Derived]) -> Vec<String> {
+    let row = |cells: [String; 6]| {
+        let [theta_i, rho_s_f, rho_v_f, peak, width, reflectance] = cells;
+        format!("    {theta_i:>7}  {rho_s_f:<19}  {rho_v_f:<19}  {peak:<28}  {width:<15}  {reflectance}")
+            .trim_end()
+            .to_string()
+    };
+    let heads = [
+        "theta_i",
+        "rho_s F",
+        "rho_v F",
+        "lobe's peak, 1/sr at deg",
+        "width, deg",
+        "reflectance",
+    ];
+    let mut lines = vec![row(heads.map(String::from))];
+    let none = || "-".to_string();
+    for at in derived.iter().take(LISTED) {
+        let peak = at.peak.as_ref();
+        let width = peak.and_then(|peak| peak.width);
+        let degrees = |value: Value| Value {
+            value: value.value.to_degrees(),
+            stderr: value.stderr.to_degrees(),
+        };
+        let excess = if at.reflectance.value > 1.0 {
+            "  ABOVE 1: energy is not conserved"
+        } else {
+            ""
+        };
+        lines.push(row([
+            short(at.theta_i.to_degrees()),
+            at.rho_s_f.map_or_else(none, shown),
+            at.rho_v_f.map_or_else(none, shown),
+            peak.map_or_else(none, |peak| {
+                format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees())
+            }),
+            width.map_or_else(none, |width| shown(degrees(width))),
+            shown(at.reflectance) + excess,
+        ]));
+    }
+    if derived.len() > LISTED {
+        lines.push(format!(
+            "    and {} more angles of incidence, in --format json",
+            derived.len() - LISTED
+        ));
+    }
+    lines
+}

@@ -3,25 +3,33 @@
 use crate::boxqp;
 use crate::geometry::{Block, LANES};
 use crate::lm::Bounds;
-use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, weights};
+use crate::model::{GROUP, Model, Role, SUMS, WEIGHTS, weights};
 use crate::pack::{ALONE, Pack};
+use crate::propose;
 use crate::real::Real;
 use crate::residuals::{Residuals, accumulate, total};
-use crate::search::{Candidate, Scene};
-use crate::start;
+use crate::search::{Candidate, Region, Scene};
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for Residuals<'_, R, M, P, C> {
     /// Candidate `i`: what is no weight spread over the ranges that the model gives, then the weights that fit best.
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.inlined_candidate(bounds, seed, i, like)
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.inlined_candidate(bounds, seed, i, region)
+    }
+
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        self.inlined_level(bounds, x)
+    }
+
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        let slopes = M::PARAMETERS.iter().zip(x.iter().zip(y));
+        let mut slopes = slopes.filter(|(parameter, _)| matches!(parameter.role, Role::Slope));
+        slopes.any(|(_, (&x, &y))| x > y * factor || y > x * factor)
     }
 }
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     /// Places of the weights.
     const WEIGHTS: [Option<usize>; WEIGHTS] = weights(&M::PARAMETERS);
-    /// Has the model an index of refraction? Then minima beside each other differ in it alone.
-    const HAS_INDEX: bool = has_index(&M::PARAMETERS);
 
     /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -30,18 +38,46 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         bounds: &Bounds<R, P>,
         seed: u64,
         i: u64,
-        like: Option<&[R; P]>,
+        region: Region<R, P>,
     ) -> Candidate<R, P> {
         let mut x = bounds.lower;
-        spread(&mut x, &M::PARAMETERS, bounds, seed, i, self.seen.finest);
-        if let Some(like) = like {
-            near(&mut x, &M::PARAMETERS, like, Self::HAS_INDEX);
+        let fades = propose::shapes(&mut x, &M::PARAMETERS, bounds, (seed, i), &self.seen, region);
+        let mut passes = 0;
+        loop {
+            let rank = self.set_weights(&mut x, bounds);
+            passes += 1;
+            if !(fades && passes == 1 && M::fade(&mut x, bounds)) {
+                let x = bounds.clamp(x);
+                return Candidate { x, rank, passes };
+            }
+            x = bounds.clamp(x);
         }
-        let rank = self.set_weights(&mut x, bounds);
-        Candidate {
-            x: bounds.clamp(x),
-            rank,
+    }
+
+    /// [`Scene::level`], compiled into its caller.
+    ///
+    /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn inlined_level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        let [squares, residuals, weights] = self.sums(x);
+        let (mut least, mut most) = (R::ZERO, R::MAX);
+        for k in Self::WEIGHTS.into_iter().flatten() {
+            if x[k] > R::ZERO {
+                least = least.max(bounds.lower[k] / x[k]);
+                most = most.min(bounds.upper[k] / x[k]);
+            }
         }
+        let scale = (-residuals / weights).exp().max(least).min(most);
+        let ln_scale = scale.ln();
+        let cost = squares + ln_scale * (residuals + residuals + ln_scale * weights);
+        if !(least < most && cost < squares) {
+            return (*x, squares);
+        }
+        let mut levelled = *x;
+        for k in Self::WEIGHTS.into_iter().flatten() {
+            levelled[k] *= scale;
+        }
+        (bounds.clamp(levelled), cost)
     }
 
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
@@ -108,78 +144,6 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     }
 }
 
-const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
-    let mut k = 0;
-    while k < P {
-        if matches!(parameters[k].role, Role::Index) {
-            return true;
-        }
-        k += 1;
-    }
-    false
-}
-
-/// Sets what is no weight to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
-fn spread<R: Real, const P: usize>(
-    x: &mut [R; P],
-    parameters: &[Parameter; P],
-    bounds: &Bounds<R, P>,
-    seed: u64,
-    i: u64,
-    finest: R,
-) {
-    // The first three take an even sequence; points of one in more dimensions would be further apart in these.
-    let even = start::even::<R>(seed, i);
-    let mut spread = 0;
-    let mut random = None;
-    for (k, parameter) in parameters.iter().enumerate() {
-        if parameter.is_weight() {
-            continue;
-        }
-        let u = match even.get(spread) {
-            Some(&u) => u,
-            None => random.get_or_insert_with(|| start::unit::<R, P>(seed, i))[k],
-        };
-        spread += 1;
-        let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
-        let (least, most) = (R::of(parameter.spread.0), R::of(parameter.spread.1));
-        let to = |most: R| upper.min(most).max(lower);
-        x[k] = match parameter.role {
-            Role::Slope => log_between(lower.max(finest).min(upper), to(most), u),
-            Role::Absorption => {
-                // A third of them without absorption.
-                let third = R::of(1.0 / 3.0);
-                if u < third {
-                    lower
-                } else {
-                    log_between(lower.max(least), upper.min(most).max(least), (u - third) * R::of(1.5))
-                }
-            }
-            _ if least > R::ZERO => log_between(lower.max(least).min(upper), to(most), u),
-            _ => {
-                let from = lower.max(least).min(upper);
-                from + (to(most) - from) * u
-            }
-        };
-    }
-}
-
-/// What decides between minima beside each other stays spread; the rest becomes that of `like`.
-///
-/// With an index of refraction that is the index alone; without one, everything stays within a factor of e.
-fn near<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], like: &[R; P], has_index: bool) {
-    for (k, parameter) in parameters.iter().enumerate() {
-        match parameter.role {
-            Role::Weight | Role::Index | Role::Absorption => {}
-            _ if has_index => x[k] = like[k],
-            _ => {
-                let ratio = (x[k] / like[k]).max(R::of(0.37)).min(R::of(2.7));
-                x[k] = like[k] * ratio;
-            }
-        }
-    }
-}
-
 /// The weights within bounds that solve `normal weights = rhs` best, and their sum of squares, less what it is at the lower bounds; a weight that is not present is 0.
 pub(crate) fn box_least_squares<R: Real, const N: usize>(
     normal: &[[R; N]; N],
@@ -217,14 +181,4 @@ pub(crate) fn box_least_squares<R: Real, const N: usize>(
         }
     }
     (core::array::from_fn(|i| lower[i] + step[i]), rank)
-}
-
-/// Between two positive numbers, evenly in the logarithm.
-pub(crate) fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
-    if !(lower < upper) {
-        return lower;
-    }
-    let lower = lower.max(R::MIN_POSITIVE);
-    let (a, b) = (lower.ln(), upper.ln());
-    (a + (b - a) * u).exp()
 }

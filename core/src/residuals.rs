@@ -165,19 +165,39 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
-            return self.cost_alone(x);
+            return self.sums_alone(x)[0];
         }
+        self.sums_of::<false>(x)[0]
+    }
+
+    /// The sums of r^2, w r and w^2 over the residuals r = w (ln f - measured), of weight w.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub(crate) fn sums(&self, x: &[R; P]) -> [R; 3] {
+        if ALONE {
+            return self.sums_alone(x);
+        }
+        self.sums_of::<true>(x)
+    }
+
+    /// These sums; the second and the third only if `ALL`.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn sums_of<const ALL: bool>(&self, x: &[R; P]) -> [R; 3] {
         let pass = M::pass(x);
-        let mut squares = [R::ZERO; SUMS];
+        let mut sums = [[R::ZERO; SUMS]; 3];
         for block in self.blocks {
             let begun = M::begin(&pass, block);
             for lane in 0..SUMS {
                 let model = M::rows::<false>(&pass, block, &begun, lane);
-                let residual = residual(block, lane, model.ln_f);
-                squares[lane] += residual.0[0] * residual.0[0] + residual.0[1] * residual.0[1];
+                let [a, b] = residual(block, lane, model.ln_f).0;
+                sums[0][lane] += a * a + b * b;
+                if ALL {
+                    let [v, w] = Pack::<R, GROUP>::gather(&block.weight, lane).0;
+                    sums[1][lane] += a * v + b * w;
+                    sums[2][lane] += v * v + w * w;
+                }
             }
         }
-        total(&squares)
+        [total(&sums[0]), total(&sums[1]), total(&sums[2])]
     }
 
     /// [`Problem::linearize`], compiled into its caller.
@@ -228,16 +248,19 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
 /// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
-    fn cost_alone(&self, x: &[R; P]) -> R {
+    fn sums_alone(&self, x: &[R; P]) -> [R; 3] {
         let pass = M::pass(x);
-        let mut squares = [R::ZERO; SUMS];
+        let mut sums = [[R::ZERO; SUMS]; 3];
         for block in self.blocks {
-            for (lane, sum) in squares.iter_mut().enumerate() {
+            for lane in 0..SUMS {
                 let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(&pass, block, lane));
-                *sum += a * a + b * b;
+                let [v, w] = Pack::<R, GROUP>::gather(&block.weight, lane).0;
+                sums[0][lane] += a * a + b * b;
+                sums[1][lane] += a * v + b * w;
+                sums[2][lane] += v * v + w * w;
             }
         }
-        total(&squares)
+        [total(&sums[0]), total(&sums[1]), total(&sums[2])]
     }
 
     fn linearize_alone(&self, x: &[R; P]) -> Linearization<R, P> {

@@ -4,7 +4,7 @@ use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options};
 use brdfit_core::real::Real;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 use brdfit_core::start;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -137,7 +137,7 @@ pub fn brute<const P: usize>(scene: &impl Scene<f64, P>, bounds: &Bounds<f64, P>
         let x = if i % 3 == 0 {
             start::uniform(seed, i, bounds)
         } else {
-            scene.candidate(bounds, !seed, i, None).x
+            scene.candidate(bounds, !seed, i, Region::Everywhere).x
         };
         let mut fit = Fit::begin(scene, bounds, x, &options);
         fit.run(scene, bounds, &options, 25);

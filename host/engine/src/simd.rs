@@ -4,7 +4,7 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Residuals;
-use brdfit_core::search::{Candidate, Scene};
+use brdfit_core::search::{Candidate, Region, Scene};
 use pulp::NullaryFnOnce;
 
 /// A set of vector instructions.
@@ -90,13 +90,26 @@ struct Propose<'a, R, M, const P: usize, const C: usize>(
     &'a Bounds<R, P>,
     u64,
     u64,
-    Option<&'a [R; P]>,
+    Region<'a, R, P>,
 );
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Propose<'_, R, M, P, C> {
     type Output = Candidate<R, P>;
     #[inline(always)]
     fn call(self) -> Candidate<R, P> {
         self.0.inlined_candidate(self.1, self.2, self.3, self.4)
+    }
+}
+
+struct Level<'a, R, M, const P: usize, const C: usize>(
+    &'a Residuals<'a, R, M, P, C>,
+    &'a Bounds<R, P>,
+    &'a [R; P],
+);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Level<'_, R, M, P, C> {
+    type Output = ([R; P], R);
+    #[inline(always)]
+    fn call(self) -> ([R; P], R) {
+        self.0.inlined_level(self.1, self.2)
     }
 }
 
@@ -132,7 +145,13 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: boo
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> Scene<R, P>
     for FastScan<'_, R, M, P, C, WIDE>
 {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.run(Propose(&self.scan, bounds, seed, i, like))
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.run(Propose(&self.scan, bounds, seed, i, region))
+    }
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        self.run(Level(&self.scan, bounds, x))
+    }
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        self.scan.apart(x, y, factor)
     }
 }

@@ -45,14 +45,14 @@ const LOOPS: u32 = 3;
 /// Passes of a fit before it is decided which of a round go on.
 const SHORT: u32 = 4;
 /// A fit goes on that is within this factor of the best cost.
-const NEAR: f64 = 1.1;
+const NEAR: f64 = 1.05;
 /// A fit is given up that is beyond this factor of the best cost after so many passes.
 const HOPELESS: (f64, u32) = (10.0, 10);
 /// An end whose slopes differ from the best by more than this factor, and its cost by less than that one, leaves a scan unsettled.
 const RIVAL_END: (f64, f64) = (1.1, 2.0);
 /// The same for a fit of a few passes.
 const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
-/// Rounds that must have led to the best end: after the first rounds, and after each part of the range of slopes was looked at once.
+/// Rounds that must have led to the best end: after the first rounds, and after half of the parts of the range of slopes were looked at.
 const HITS: (u32, u32) = (2, 3);
 /// Ends that are remembered.
 const ENDS: usize = 16;
@@ -208,13 +208,16 @@ pub fn search<R: Real, const P: usize>(
             if round == ROUNDS {
                 unsettled = search.best_hits() < HITS.0 || search.has_rival_fit() || search.has_rival_end();
             }
-            let once = round == ROUNDS + BANDS && search.best_hits() >= HITS.1 && !search.has_rival_end();
+            let once = round == ROUNDS + BANDS / 2 && search.best_hits() >= HITS.1 && !search.has_rival_end();
             if round >= ROUNDS && !unsettled || once {
                 break;
             }
         }
         let region = match round.checked_sub(ROUNDS) {
-            Some(band) if band % (2 * BANDS) < BANDS || round < ROUNDS + CYCLES * BANDS => Region::Band(band % BANDS),
+            Some(band) if band % (2 * BANDS) < BANDS || round < ROUNDS + CYCLES * BANDS => {
+                // The first half of them is spread over the range.
+                Region::Band(band * 5 % BANDS)
+            }
             _ => Region::Everywhere,
         };
         let end = made.saturating_add(ROUND).min(candidates.max(1));

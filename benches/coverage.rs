@@ -3,11 +3,11 @@
 use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::profile::calibrate::thresholds;
 use brdfit::analysis::profile::{calibrate::threshold, hold::hold};
-use brdfit::engine::{FitOptions, fit};
-use brdfit_core::brdf::{NAMES, Params};
+use brdfit::engine::{FitOptions, Material, fit};
+use brdfit_core::brdf::NAMES;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
-use brdfit_suite::scan::{data, scan};
+use brdfit_suite::scan::{data, scan, six};
 use rayon::prelude::*;
 
 const COPIES: u64 = 1000;
@@ -19,7 +19,7 @@ const CALIBRATED: (usize, usize) = (1, 3);
 const SCALE: f64 = 0.057_735_026_918_962_58;
 
 /// How a set is measured again.
-type Measure = fn(&[Sample<f64>], &Params<f64>, &mut Noise) -> Vec<Sample<f64>>;
+type Measure = fn(&[Sample<f64>], &Material, &mut Noise) -> Vec<Sample<f64>>;
 
 /// The actual parameters of the paper's sets.
 const ACTUAL: [[f64; 6]; 3] = [
@@ -73,11 +73,7 @@ fn table(title: &str, measure: Measure, calibrated: bool) {
         let held = (0..COPIES).into_par_iter().map(|seed| {
             let noise = &mut Noise::new(set as u64, seed);
             let calibrated = (calibrated && set == CALIBRATED.0).then_some(seed);
-            intervals(
-                &measure(&samples, &Params::from_array(*actual), noise),
-                actual,
-                calibrated,
-            )
+            intervals(&measure(&samples, &Material::paper(*actual), noise), actual, calibrated)
         });
         let none = || [[0u32; 6]; 3];
         let sum = held
@@ -102,7 +98,7 @@ fn intervals(samples: &[Sample<f64>], actual: &[f64; 6], calibrated: Option<u64>
     let outcome = fit(samples, &options).expect("simulated scans are valid");
     let known = &outcome.uncertainty;
     let limit = threshold(0.95, known.degrees_of_freedom);
-    let best = outcome.params.to_array();
+    let best = six(&outcome.params);
     let quadratic = std::array::from_fn(|k| (best[k] - actual[k]).abs() <= Real::sqrt(limit) * known.stderr[k]);
     let held = std::array::from_fn(|k| {
         let point = hold(samples, &options, &outcome, k, actual[k]).expect("simulated scans are valid");

@@ -9,9 +9,9 @@ use std::process::Command;
 use std::time::Instant;
 
 use brdfit::analysis::paper_sets::{Subject, paper_scans};
-use brdfit::engine::simd::{FastScan, Simd};
+use brdfit::engine::simd::{FastEq14, Simd};
 use brdfit::engine::trace::{Trace, passes, trace};
-use brdfit::engine::{FitOptions, Precision, blocks, fit};
+use brdfit::engine::{FitOptions, Material, Precision, blocks, fit};
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
@@ -166,11 +166,11 @@ fn brute_force(k: u64, starts: u64) -> f64 {
     let samples = scene(k);
     let options = FitOptions::default();
     let blocks = blocks::<f64>(&samples).expect("scenes are valid");
-    let fast = FastScan {
+    let fast = FastEq14 {
         scan: Scan::<f64, ALL, 6>::new(&blocks),
         simd: options.simd,
     };
-    let bounds = Scan::<f64, ALL, 6>::bounds(&options.lower, &options.upper);
+    let bounds = Scan::<f64, ALL, 6>::usual_bounds();
     brute(&fast, &bounds, starts, k)
 }
 
@@ -271,7 +271,7 @@ fn growth(out: &mut String, settings: &Settings) {
     );
     out.push_str("| samples | passes | ms | us of a sample | ns of a sample and pass |\n|--:|--:|--:|--:|--:|\n");
     let Subject { samples, truth, .. } = paper_scans().swap_remove(0);
-    let truth = truth.expect("the paper's sets are synthetic");
+    let truth = of_eq_14(truth);
     let mut count = 171;
     while count <= settings.samples {
         let scan = noisy(&truth, samples[0].theta_i, count, 1);
@@ -301,7 +301,7 @@ fn batch(out: &mut String, settings: &Settings) {
     let sets = paper_scans();
     let scan = |k: u64| {
         let Subject { samples, truth, .. } = &sets[(k % 3) as usize];
-        noisy(&truth.expect("the sets are synthetic"), samples[0].theta_i, 171, k)
+        noisy(&of_eq_14(*truth), samples[0].theta_i, 171, k)
     };
     let scans: Vec<_> = (0..settings.batch).map(scan).collect();
     let one = |scan: &Vec<Sample<f64>>| fit(scan, &FitOptions::default()).expect("the scans are valid").cost;
@@ -358,4 +358,9 @@ fn commit() -> String {
         Ok(output) if output.status.success() => String::from_utf8_lossy(&output.stdout).trim().to_string(),
         _ => "unknown".to_string(),
     }
+}
+
+fn of_eq_14(truth: Option<Material>) -> Params<f64> {
+    let truth = truth.and_then(|material| material.eq_14());
+    truth.expect("the paper's sets are synthetic")
 }

@@ -6,14 +6,14 @@ use std::hint::black_box;
 use std::process::Command;
 
 use brdfit::analysis::paper_sets::paper_scans;
-use brdfit::engine::simd::{FastScan, Simd};
+use brdfit::engine::simd::{FastEq14, Simd};
 use brdfit::engine::{FitOptions, Precision, blocks, fit};
-use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
+use brdfit_core::brdf::{ALL, DIFFUSE, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 /// What is counted, and how often it is repeated.
 const WORK: [(&str, u64); 6] = [
@@ -72,18 +72,17 @@ fn repeat<R: Real, const TERMS: u8, const P: usize>(
         simd,
         ..FitOptions::default()
     };
-    let real = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
-    let bounds = Scan::<R, TERMS, P>::bounds(&real(&options.lower), &real(&options.upper));
-    let scene = FastScan {
+    let bounds = Scan::<R, TERMS, P>::usual_bounds();
+    let scene = FastEq14 {
         scan: Scan::<R, TERMS, P>::new(&blocks),
         simd,
     };
-    let x = scene.candidate(&bounds, 0, 0, None).x;
+    let x = scene.candidate(&bounds, 0, 0, Region::Everywhere).x;
     for i in 0..repeats {
         match work {
             "cost" => drop(black_box(scene.cost(black_box(&x)))),
             "linearize" => drop(black_box(scene.linearize(black_box(&x)))),
-            "candidate" => drop(black_box(scene.candidate(&bounds, 0, black_box(i), None))),
+            "candidate" => drop(black_box(scene.candidate(&bounds, 0, black_box(i), Region::Everywhere))),
             _ => drop(black_box(fit(black_box(samples), &options))),
         }
     }

@@ -4,14 +4,14 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use brdfit::analysis::paper_sets::{Subject, paper_scans};
-use brdfit::engine::simd::{FastScan, Simd};
-use brdfit::engine::{FitOptions, blocks};
+use brdfit::engine::blocks;
+use brdfit::engine::simd::{FastEq14, Simd};
 use brdfit_core::brdf::{ALL, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn passes<R: Real, const TERMS: u8, const P: usize>(
@@ -22,11 +22,10 @@ fn passes<R: Real, const TERMS: u8, const P: usize>(
 ) {
     let blocks = blocks::<R>(samples).expect("the set is valid");
     let real = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
-    let limits = FitOptions::default();
-    let bounds = Scan::<R, TERMS, P>::bounds(&real(&limits.lower), &real(&limits.upper));
+    let bounds = Scan::<R, TERMS, P>::usual_bounds();
     let x = Scan::<R, TERMS, P>::coordinates(&real(truth));
     for simd in Simd::available() {
-        let scene = FastScan {
+        let scene = FastEq14 {
             scan: Scan::<R, TERMS, P>::new(&blocks),
             simd,
         };
@@ -37,7 +36,7 @@ fn passes<R: Real, const TERMS: u8, const P: usize>(
         group.bench_function("candidate", |b| {
             b.iter(|| {
                 i += 1;
-                scene.candidate(&bounds, 0, black_box(i), None)
+                scene.candidate(&bounds, 0, black_box(i), Region::Everywhere)
             });
         });
         group.finish();
@@ -46,6 +45,7 @@ fn passes<R: Real, const TERMS: u8, const P: usize>(
 
 fn kernel(criterion: &mut Criterion) {
     let Subject { samples, truth, .. } = paper_scans().swap_remove(0);
+    let truth = truth.and_then(|material| material.eq_14());
     let truth = truth.expect("the paper's sets are synthetic");
     passes::<f64, ALL, 6>(criterion, "all/f64", &samples, &truth);
     passes::<f32, ALL, 6>(criterion, "all/f32", &samples, &truth);

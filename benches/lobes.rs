@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use brdfit::engine::models::{Fitted, MODELS};
+use brdfit::analysis::choose::{Criteria, criteria};
+use brdfit::engine::models::MODELS;
+use brdfit::engine::{FitOptions, Outcome, fit};
 use brdfit::input::{ReadOptions, read_file};
 
 fn main() {
@@ -21,8 +23,13 @@ fn main() {
         "Root mean square of the residuals of ln f at each model's best fit, and the model of least AICc; the last column is by how much it falls from Eq. 14 to that model."
     );
     println!("Printed by `cargo run --release --example lobes`.\n");
-    for model in MODELS {
-        println!("- `{}`: {} ({} parameters)", model.name, model.what, model.parameters);
+    for model in &MODELS {
+        println!(
+            "- `{}`: {} ({} parameters)",
+            model.name,
+            model.what,
+            model.parameters.len()
+        );
     }
     let names: Vec<_> = MODELS.iter().map(|model| model.name).collect();
     println!("\n| scan | samples | {} | least AICc | fall |", names.join(" | "));
@@ -34,17 +41,23 @@ fn main() {
             scan.ok_or_else(|| brdfit::error::Error::new("there is no scan"))
         });
         let scan = scan.unwrap_or_else(|error| panic!("{error}"));
-        let fits = MODELS.map(|model| model.fit(&scan.samples, 0).unwrap_or_else(|error| panic!("{error}")));
-        let rms: Vec<_> = fits.iter().map(|fit| format!("{:.3}", fit.rms_ln())).collect();
-        let best = fits.iter().min_by(|a, b| a.aicc().total_cmp(&b.aicc()));
-        let best: &Fitted = best.expect("there are models");
+        let fits = MODELS.iter().map(|model| {
+            let options = FitOptions::of(model);
+            let outcome = fit(&scan.samples, &options).unwrap_or_else(|error| panic!("{error}"));
+            let criteria = criteria(&scan.samples, &options, outcome.cost);
+            (outcome, criteria)
+        });
+        let fits: Vec<(Outcome, Criteria)> = fits.collect();
+        let rms: Vec<_> = fits.iter().map(|(fit, _)| format!("{:.3}", fit.rms_ln)).collect();
+        let best = fits.iter().min_by(|a, b| a.1.aicc.total_cmp(&b.1.aicc));
+        let best = &best.expect("there are models").0;
         println!(
             "| {} | {} | {} | {} | {:.0} % |",
             name.unwrap_or_default(),
             scan.samples.len(),
             rms.join(" | "),
-            best.model,
-            100.0 * (1.0 - best.rms_ln() / fits[0].rms_ln())
+            best.model.name,
+            100.0 * (1.0 - best.rms_ln / fits[0].0.rms_ln)
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::choose::{self, Candidate, Choice, SETS};
-use brdfit::engine::{self, FitOptions};
+use brdfit::engine::{self, FitOptions, Material};
 use brdfit::terms::term_names;
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
@@ -143,7 +143,7 @@ fn least_aicc(choice: &Choice) -> u8 {
 }
 
 /// Angles, parameters and noise of a scene with these terms.
-fn draw(terms: u8, random: &mut Noise) -> (Vec<Sample<f64>>, Params<f64>, f64) {
+fn draw(terms: u8, random: &mut Noise) -> (Vec<Sample<f64>>, Material, f64) {
     let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
     let angles = 1 + between(0.0, 3.0) as usize;
     let theta_i: Vec<f64> = (0..angles).map(|_| between(0.0, 80.0).round()).collect();
@@ -169,5 +169,5 @@ fn draw(terms: u8, random: &mut Noise) -> (Vec<Sample<f64>>, Params<f64>, f64) {
     });
     let samples =
         directions.map(|(theta_i, theta_s)| Sample::in_plane(theta_i.to_radians(), theta_s.to_radians(), 1.0));
-    (samples.collect(), params, noise)
+    (samples.collect(), Material::paper(params.to_array()), noise)
 }

@@ -29,6 +29,14 @@ fn scans(count: usize) -> (TempDir, PathBuf, PathBuf) {
     (root, folder, out)
 }
 
+/// A line of finished fits with the checksum that it should have: FNV-1a of its JSON.
+fn summed(line: &str) -> String {
+    let (_, json) = line.split_once(' ').unwrap();
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let sum = json.trim_end().as_bytes().iter().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{sum:016x} {json}")
+}
+
 /// Runs what must succeed, and gives the file of results.
 fn batch(folder: &Path, out: &Path, options: &[&str]) -> String {
     let ran = brdfit(&[&["batch", text(folder), "--out", text(out)], options].concat());
@@ -190,8 +198,9 @@ fn a_run_is_resumed_where_it_was_killed() {
     assert_eq!(lines.len(), 7);
     let partial = out.with_extension("csv.partial");
     // One record is marked, so that it shows whether it was taken over.
-    let marked = lines[3].replace("\"default\"", "\"marked\"");
+    let marked = summed(&lines[3].replace("\"default\"", "\"marked\""));
     assert_ne!(marked, lines[3]);
+    assert_eq!(summed(lines[3]), lines[3]);
     let torn = format!("{}{}{marked}{}", lines[0], lines[5], &lines[2][..lines[2].len() / 2]);
     fs::write(&partial, &torn).unwrap();
     fs::remove_file(&out).unwrap();
@@ -206,7 +215,13 @@ fn a_run_is_resumed_where_it_was_killed() {
         "of other files",
     );
     assert_eq!(fs::read_to_string(&partial).unwrap(), torn);
-    assert_eq!(brdfit(&[&arguments[..], &["--resume"]].concat()).code, 0);
+    let ran = brdfit(&[&arguments[..], &["--resume"]].concat());
+    assert_eq!(ran.code, 0);
+    let said = format!(
+        "{}:4: this is no whole record; the fit that it may have been of is made again\n",
+        text(&partial)
+    );
+    assert_eq!(ran.errors, said);
     let resumed = fs::read_to_string(&out).unwrap();
     assert_eq!(resumed.matches("marked").count(), 1);
     assert_eq!(resumed.replace("marked", "default"), whole);
@@ -215,7 +230,48 @@ fn a_run_is_resumed_where_it_was_killed() {
     fs::write(&partial, torn).unwrap();
     let third = folder.join("02.csv");
     fs::write(&third, fs::read_to_string(&third).unwrap() + "\n").unwrap();
-    assert_eq!(batch(&folder, &out, &["--resume"]), whole);
+    assert_eq!(brdfit(&[&arguments[..], &["--resume"]].concat()).code, 0);
+    assert_eq!(fs::read_to_string(&out).unwrap(), whole);
+}
+
+#[test]
+fn a_flipped_digit_is_found_and_fitted_again() {
+    let (_root, folder, out) = scans(4);
+    let whole = batch(&folder, &out, &[]);
+    fs::remove_file(&out).unwrap();
+    let shard = ["batch", text(&folder), "--out", text(&out), "--shard", "1/1"];
+    assert_eq!(brdfit(&shard).code, 0);
+    let path = out.with_extension("csv.1-of-1");
+    let part = fs::read_to_string(&path).unwrap();
+    // A digit of a parameter in the third record, such as a disk may lose.
+    let third = part.match_indices('\n').nth(2).unwrap().0;
+    let digit = third + part[third..].find("0.").unwrap() + 3;
+    let other = if part.as_bytes()[digit] == b'7' { "8" } else { "7" };
+    let mut flipped = part.clone();
+    flipped.replace_range(digit..=digit, other);
+    fs::write(&path, &flipped).unwrap();
+    let error = program::fail(&["merge", "--out", text(&out)]);
+    assert!(
+        error.contains("the record of file 3 is broken; run --shard 1/1 again with --resume"),
+        "{error}"
+    );
+    let again = brdfit(&[&shard[..], &["--resume"]].concat());
+    assert_eq!(again.code, 0);
+    assert!(again.errors.contains(":4: this is no whole record"), "{}", again.errors);
+    assert_eq!(fs::read_to_string(&path).unwrap(), part);
+    assert_eq!(brdfit(&["merge", "--out", text(&out)]).code, 0);
+    assert_eq!(fs::read_to_string(&out).unwrap(), whole);
+    // The same in the finished fits of a run that was interrupted.
+    let partial = out.with_extension("csv.partial");
+    fs::write(&partial, flipped).unwrap();
+    let resumed = brdfit(&["batch", text(&folder), "--out", text(&out), "--resume"]);
+    assert_eq!(resumed.code, 0);
+    assert!(
+        resumed.errors.contains(":4: this is no whole record"),
+        "{}",
+        resumed.errors
+    );
+    assert_eq!(fs::read_to_string(&out).unwrap(), whole);
 }
 
 #[test]
@@ -306,6 +362,13 @@ fn merge_takes_nothing_missing_or_doubled() {
             part.replace("\"contents\"", "\"content\""),
             "the record of file 2 is broken",
         ),
+        (
+            lines
+                .iter()
+                .map(|line| summed(&line.replace("\"contents\"", "\"content\"")))
+                .collect(),
+            "the record of file 2 is broken",
+        ),
         (lines[1..].concat(), "no part of a batch"),
     ];
     for (contents, what) in broken {
@@ -346,7 +409,7 @@ fn options_that_make_no_sense_are_one_line() {
     fail(&["batch", "-", "--out", text(&out)], "@-");
     fail(
         &["batch", folder, "--out", "no/folder/results.csv"],
-        "can not be written",
+        "cannot be written",
     );
     assert_eq!(
         brdfit(&["batch", folder, "--out", text(&out), "--shard", "3/2"]).code,

@@ -7,13 +7,13 @@
 use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::choose::{self, SETS};
 use brdfit::analysis::profile::calibrate::threshold;
-use brdfit::engine::{self, FitOptions};
+use brdfit::engine::{self, FitOptions, Material};
 use brdfit::result::words;
 use brdfit::terms::term_names;
-use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, Params, SURFACE, has, parameters};
+use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, SURFACE, has, parameters};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program;
-use brdfit_suite::scan::{data, scan};
+use brdfit_suite::scan::{data, scan, six};
 use brdfit_suite::tolerance::{self, check};
 use serde_json::Value;
 
@@ -38,7 +38,7 @@ fn scene(terms: u8, seed: u64) -> Vec<Sample<f64>> {
             .map(move |theta_s| Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0))
     });
     let samples: Vec<_> = directions.collect();
-    copy(&samples, &Params::from_array(params), 0.005, &mut Noise::new(5, seed))
+    copy(&samples, &Material::paper(params), 0.005, &mut Noise::new(5, seed))
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn criteria() {
 fn bounds_that_need_a_term_keep_it() {
     let samples = scene(DIFFUSE | SURFACE, 3);
     let mut options = auto();
-    (options.lower.kappa, options.upper.kappa) = (1.0, 1.0);
+    (options.lower[5], options.upper[5]) = (1.0, 1.0);
     let choice = choose::fit(&samples, &options).unwrap().2.unwrap();
     assert!(
         choice
@@ -116,8 +116,8 @@ fn bounds_that_need_a_term_keep_it() {
     let absorbing = choice.candidates.iter().find(|one| has(one.terms, 5)).unwrap();
     assert_eq!(absorbing.parameters, parameters(absorbing.terms) - 1);
     // Without noise the smallest set that is exact is chosen, not the one with the luckiest rounding.
-    let params = Params::from_array([0.1, 1.0, 0.0, 0.2, 1.5, 0.0]);
-    let exact = copy(&samples, &params, 0.0, &mut Noise::new(0, 0));
+    let material = Material::paper([0.1, 1.0, 0.0, 0.2, 1.5, 0.0]);
+    let exact = copy(&samples, &material, 0.0, &mut Noise::new(0, 0));
     assert_eq!(choose::fit(&exact, &auto()).unwrap().0.terms, DIFFUSE | SURFACE);
     // Too few samples for the larger sets: those are no candidates.
     let few = choose::fit(&samples[..5], &auto()).unwrap().2.unwrap();
@@ -142,7 +142,7 @@ fn command() {
     assert_eq!(selection["candidates"].as_array().unwrap().len(), SETS.len());
     assert!(selection["candidates"][0]["f_test_p"].is_null() && selection["candidates"][1]["f_test_p"].is_f64());
     for (k, name) in NAMES.iter().enumerate() {
-        assert_eq!(json["parameters"][name].as_f64(), Some(outcome.params.to_array()[k]));
+        assert_eq!(json["parameters"][name].as_f64(), Some(six(&outcome.params)[k]));
     }
     let ran = program::brdfit(&["profile", file, "--terms", "auto", "--parameter", "rho_d"], b"");
     assert_eq!(ran.code, 0);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use brdfit::engine::models::MODELS;
+use brdfit::engine::Model;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_suite::program::brdfit;
@@ -10,10 +10,7 @@ use serde_json::Value;
 
 /// A scan as CSV of the model of that name, which has these parameters; times 1 +- `noise` alternately.
 fn scan(model: &str, parameters: &[f64], noise: f64) -> String {
-    let model = MODELS
-        .into_iter()
-        .find(|known| known.name == model)
-        .expect("a known model");
+    let model = Model::find(model).expect("a known model");
     let mut csv = String::from("theta_i,theta_s,brdf\n");
     for theta_i in [20.0f64, 60.0] {
         for theta_s in (-80..=80).step_by(2) {

@@ -1,11 +1,11 @@
 //! The same bits with any number of threads, any vector instructions, and every time.
 
-use brdfit::engine::ln_f;
 use brdfit::engine::simd::Simd;
 use brdfit::engine::{FitOptions, Method, Outcome, Precision, fit};
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE};
+use brdfit_core::brdf::{ABSORBING, ALL, Brdf, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
+use brdfit_suite::scan::six;
 
 /// Test data 1 of the paper with a made-up ripple of 5 % in place of noise; 37 samples, so the last block is not full.
 fn scan() -> Vec<Sample<f64>> {
@@ -21,7 +21,11 @@ fn scan() -> Vec<Sample<f64>> {
         let theta_s = (f64::from(index) * 4.5 - 80.0).to_radians();
         let geometry = Geometry::new(45f64.to_radians(), theta_s, f64::PI).unwrap();
         let ripple = f64::from((index * 37) % 101 - 50) * 1e-3;
-        Sample::in_plane(45f64.to_radians(), theta_s, Real::exp(ln_f(&truth, &geometry) + ripple))
+        Sample::in_plane(
+            45f64.to_radians(),
+            theta_s,
+            Real::exp(Brdf::<f64, ALL>::new(&truth).ln_f(&geometry) + ripple),
+        )
     };
     (0..37).map(sample).collect()
 }
@@ -34,7 +38,7 @@ fn bits(outcome: &Outcome) -> Vec<u64> {
         outcome.rms_ln,
         outcome.improvement_potential,
     ];
-    bits.extend(outcome.params.to_array());
+    bits.extend(six(&outcome.params));
     let mut counts = vec![
         outcome.samples as u64,
         u64::from(outcome.evaluations.cost),
@@ -42,7 +46,7 @@ fn bits(outcome: &Outcome) -> Vec<u64> {
     ];
     for minimum in &outcome.minima {
         bits.push(minimum.mse2);
-        bits.extend(minimum.params.to_array());
+        bits.extend(six(&minimum.params));
         counts.extend([u64::from(minimum.hits), minimum.first_start]);
     }
     bits.into_iter().map(f64::to_bits).chain(counts).collect()

@@ -117,11 +117,11 @@ fn what_is_no_result_is_refused() {
     assert!(
         program::brdfit(&["export", "-", "--to", "c"], bad.as_bytes())
             .errors
-            .contains("m can not be 0")
+            .contains("m cannot be 0")
     );
     for (list, what) in [
         ("rho_d=1", "--params lacks rho_s, rho_v"),
-        ("n=0.5", "n can not be 0.5"),
+        ("n=0.5", "n cannot be 0.5"),
         ("n=2,n=3", "gives n twice"),
     ] {
         let ran = brdfit(&["export", "--params", list, "--to", "c"]);

@@ -2,34 +2,15 @@
 
 use std::fs;
 
-use brdfit::engine;
 use brdfit::input::{self, ReadOptions};
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::real::Real;
 use brdfit_suite::program::{self, write};
 use brdfit_suite::scan::data;
 use brdfit_suite::tolerance::{self, check};
+use brdfit_suite::written::{INCIDENT, TRUTH, brdf, scattered, texts};
 use serde_json::Value;
-
-const TRUTH: [f64; 6] = [0.1, 10.0, 0.01, 0.1, 3.0, 1.0];
-const INCIDENT: [f64; 2] = [30.0, 60.0];
-
-/// The BRDF of [`TRUTH`] at angles in degrees.
-fn brdf(theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
-    let delta_phi = if delta_phi == 180.0 {
-        f64::PI
-    } else {
-        delta_phi.to_radians()
-    };
-    let geometry = Geometry::new(theta_i.to_radians(), theta_s.to_radians(), delta_phi).expect("valid angles");
-    Real::exp(engine::ln_f(&Params::from_array(TRUTH), &geometry))
-}
-
-/// Scattering angles in plane.
-fn scattered() -> impl Iterator<Item = f64> {
-    (-20..=20).map(|k| f64::from(4 * k))
-}
 
 fn fit(arguments: &[&str]) -> Value {
     let ran = program::brdfit(&[&["fit", "--format", "json"], arguments].concat(), b"");
@@ -53,94 +34,6 @@ fn error(found: &Value) -> f64 {
     let names = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"].into_iter().zip(TRUTH);
     let errors = names.map(|(name, truth)| (found["parameters"][name].as_f64().expect("a number") / truth - 1.0).abs());
     errors.fold(0.0, f64::max)
-}
-
-/// The scan of [`TRUTH`] in the text formats, by the name that the program has for each.
-fn texts() -> Vec<(&'static str, String)> {
-    let points: Vec<[f64; 2]> = INCIDENT
-        .iter()
-        .flat_map(|&i| scattered().map(move |s| [i, s]))
-        .collect();
-    let line = |write: &dyn Fn(f64, f64, f64) -> String| -> String {
-        points.iter().map(|&[i, s]| write(i, s, brdf(i, s, 180.0))).collect()
-    };
-    let mut matrix = String::from("theta_s\t30\t60\n");
-    for s in scattered() {
-        matrix += &format!("{s}\t{}\t{}\n", brdf(30.0, s, 180.0), brdf(60.0, s, 180.0));
-    }
-    let polar = |s: f64| (s.abs(), if s < 0.0 { 0.0 } else { 180.0 });
-    let list = |value: &dyn Fn(f64, f64) -> f64| -> String {
-        let values: Vec<String> = points.iter().map(|&[i, s]| value(i, s).to_string()).collect();
-        format!("[{}]", values.join(", "))
-    };
-    let bird = format!(
-        "{{\"metadata\": {{}}, \"data\": {{\"theta_i\": {{\"unit\": \"deg\", \"values\": {}}},\n\
-         \"phi_i\": {{\"unit\": \"deg\", \"values\": {}}},\n\"theta_r\": {{\"unit\": \"rad\", \"values\": {}}},\n\
-         \"phi_r\": {{\"unit\": \"deg\", \"values\": {}}},\n\"BRDF\": {{\"unit\": \"1/sr\", \"values\": {}}}}}}}\n",
-        list(&|i, _| i),
-        list(&|_, _| 90.0),
-        list(&|_, s| polar(s).0.to_radians()),
-        list(&|_, s| (polar(s).1 + 90.0) % 360.0),
-        list(&|i, s| brdf(i, s, 180.0)),
-    );
-    let block = |theta_i: f64| -> String {
-        scattered()
-            .map(|s| format!("{s} 0 {}\n", brdf(theta_i, s, 180.0) / 2.0))
-            .collect()
-    };
-    // Angles from the specular ray: theta_s = theta_i - radial, then theta_i + radial.
-    let radials: Vec<f64> = (0..=14).map(|k| f64::from(2 * k)).collect();
-    let zemax_row = |theta_i: f64, side: f64| -> String {
-        let values = radials
-            .iter()
-            .map(|radial| brdf(theta_i, theta_i + side * radial, 180.0).to_string());
-        values.collect::<Vec<_>>().join("\t") + "\n"
-    };
-    let mut zemax = format!(
-        "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\nSampleRotation 1\n0\n\
-         AngleOfIncidence 2\n30 60\nScatterAzimuth 2\n0 180\nScatterRadial 15\n{}\n\nMonochrome\nDataBegin\n",
-        radials.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
-    );
-    for theta_i in INCIDENT {
-        zemax += &format!("TIS 0.1\n{}{}", zemax_row(theta_i, -1.0), zemax_row(theta_i, 1.0));
-    }
-    zemax += "DataEnd\n";
-    vec![
-        (
-            "table",
-            "theta_i;theta_s;brdf\n".to_string() + &line(&|i, s, f| format!("{i};{s};{f}\n")),
-        ),
-        ("matrix", matrix),
-        (
-            "astm",
-            format!(
-                "LAB_NAME none\nNUM_POINTS {}\nVARS theta_i,phi_i,theta_s,phi_s,Integrated\n\n",
-                points.len()
-            ) + &line(&|i, s, f| {
-                let (theta_s, phi_s) = polar(s);
-                format!(
-                    "{},0,{},{:.6},{f}\n",
-                    i.to_radians(),
-                    theta_s.to_radians(),
-                    phi_s.to_radians()
-                )
-            }),
-        ),
-        ("bird", bird),
-        (
-            "fred",
-            format!(
-                "type bsdf_data\nformat angles=deg bsdf=value scale=2\n30 0\n{}60 0\n{}",
-                block(30.0),
-                block(60.0)
-            ),
-        ),
-        (
-            "lumos",
-            "# phi_i theta_i phi_o theta_o brdf\n".to_string() + &line(&|i, s, f| format!("{i} -180 {s} 0 {f}\n")),
-        ),
-        ("zemax", zemax),
-    ]
 }
 
 #[test]
@@ -429,7 +322,7 @@ fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
 fn rms_from_truth(samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-        let residual = engine::ln_f(&Params::from_array(TRUTH), &geometry) - Real::ln(sample.brdf);
+        let residual = Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry) - Real::ln(sample.brdf);
         residual * residual
     });
     (squares.sum::<f64>() / samples.len() as f64).sqrt()

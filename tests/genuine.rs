@@ -1,5 +1,6 @@
 //! Genuine files of instruments and databases, against tables that others made of them.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -98,5 +99,82 @@ fn genuine_files_agree_with_tables_made_of_them() {
     }
     if let Some(scans) = genuine("formats/BrownVinyl_zemax_format_sample.bsdf", &ReadOptions::default()) {
         assert_eq!((scans.len(), scans[0].samples.len()), (1, 640));
+    }
+}
+
+/// The samples in plane at one angle of incidence, by theta_s in whole degrees.
+fn in_plane(scan: &Measurement, theta_i: f64) -> BTreeMap<i64, f64> {
+    let here = scan
+        .samples
+        .iter()
+        .filter(|sample| (sample.theta_i - theta_i.to_radians()).abs() < 1e-9);
+    let signed = here.filter_map(|sample| match sample.delta_phi {
+        azimuth if azimuth == f64::PI => Some((sample.theta_s, sample.brdf)),
+        0.0 => Some((-sample.theta_s, sample.brdf)),
+        _ => None,
+    });
+    signed
+        .map(|(theta_s, brdf)| (theta_s.to_degrees().round() as i64, brdf))
+        .collect()
+}
+
+#[test]
+fn a_material_in_the_forms_of_speos_and_zemax_is_the_same() {
+    let options = ReadOptions::default();
+    let (speos, zemax) = (
+        genuine(
+            "formats/test_13_planesymmetric_brdf_speos_reference.anisotropicbsdf",
+            &options,
+        ),
+        genuine("formats/BrownVinyl_zemax_format_sample.bsdf", &options),
+    );
+    let (Some(speos), Some(zemax)) = (speos, zemax) else {
+        return;
+    };
+    assert_eq!((speos.len(), speos[0].name.as_deref()), (1, None));
+    // The form of Speos was made absolute by reflectances that are not in that of Zemax, so each angle of incidence has a factor.
+    let (mut worst, mut largest) = (0.0f64, 0.0f64);
+    for theta_i in [15.0, 30.0, 50.0, 70.0] {
+        let (a, b) = (in_plane(&speos[0], theta_i), in_plane(&zemax[0], theta_i));
+        // Towards the horizon the converter has mixed in the zeros below it.
+        let both = b.iter().filter(|(theta_s, _)| theta_s.abs() <= 75);
+        let ratios: Vec<f64> = both
+            .filter_map(|(theta_s, brdf)| Some(a.get(theta_s)? / brdf))
+            .collect();
+        assert!(ratios.len() >= 12, "{}", ratios.len());
+        let factor = median(ratios.clone());
+        worst = ratios
+            .iter()
+            .map(|ratio| (ratio / factor - 1.0).abs())
+            .fold(worst, f64::max);
+        largest = largest.max((factor - 1.0).abs());
+        println!("theta_i {theta_i}: {} directions, factor {factor:.4}", ratios.len());
+    }
+    check(worst, tolerance::SPEOS_ZEMAX);
+    check(largest, tolerance::SPEOS_ZEMAX_FACTOR);
+}
+
+#[test]
+fn genuine_files_are_read_or_called_by_their_name() {
+    if let Some(scans) = genuine("formats/example_material_lidar_brdf.xompt", &ReadOptions::default()) {
+        let scan = &scans[0];
+        assert_eq!(
+            (scans.len(), scan.name.as_deref(), scan.samples.len()),
+            (1, Some("905 nm"), 716)
+        );
+        assert_eq!(scan.left_out.iter().map(|one| one.samples).sum::<usize>(), 189);
+    }
+    let scattering = shared("formats/Black_Paint.scattering");
+    if scattering.exists() {
+        let bytes = fs::read(&scattering).expect("a readable file");
+        let error = input::parse("x", &bytes, &ReadOptions::default()).unwrap_err();
+        assert!(
+            error
+                .what
+                .contains("'OPTIS - Scattering surface file v1.0' is a model of Speos"),
+            "{error}"
+        );
+    } else {
+        left_out("Black_Paint.scattering", &scattering);
     }
 }

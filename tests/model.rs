@@ -263,7 +263,7 @@ fn sixty_digits_fresnel() {
 fn ordinary_scenes() -> Vec<([f64; 3], [f64; 6])> {
     let mut scenes = Vec::new();
     for i in 0..2000 {
-        let u: [f64; 9] = std::array::from_fn(|k| start::even::<f64, 3>(k as u64 / 3, i)[k % 3]);
+        let u: [f64; 9] = std::array::from_fn(|k| start::even::<f64>(k as u64 / 3, i)[k % 3]);
         let angles = [1.3 * u[0], 1.3 * u[1], PI * u[2]];
         let params = [
             0.05 + 0.9 * u[3],

@@ -7,8 +7,7 @@
 use brdfit::analysis::bootstrap::{Noise, bootstrap, copy, quantile};
 use brdfit::analysis::profile::calibrate::thresholds;
 use brdfit::analysis::profile::{Profile, calibrate::threshold, hold::hold, profile};
-use brdfit::engine::{self, FitOptions, Outcome};
-use brdfit_core::brdf::Params;
+use brdfit::engine::{self, FitOptions, Material, Outcome, Values};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program;
 use brdfit_suite::scan::{data, scan};
@@ -24,10 +23,10 @@ fn fitted(name: &str) -> (Vec<Sample<f64>>, FitOptions, Outcome) {
 
 /// The cost of a search with one parameter held, and nothing else known.
 fn searched(samples: &[Sample<f64>], options: &FitOptions, index: usize, value: f64) -> f64 {
-    let with = |params: &Params<f64>| {
-        let mut all = params.to_array();
+    let with = |params: &Values| {
+        let mut all = *params;
         all[index] = value;
-        Params::from_array(all)
+        all
     };
     let options = FitOptions {
         lower: with(&options.lower),
@@ -97,12 +96,12 @@ fn flat_valleys_end_at_the_bounds() {
     assert!(n.rise(&actual) < 1.0);
     // An optimum on a bound: that is an end.
     let (samples, options, outcome) = fitted("testdata3_sym_seed1.csv");
-    assert_eq!(outcome.params.kappa, 0.0);
+    assert_eq!(outcome.params[5], 0.0);
     let kappa = profile(&samples, &options, &outcome, 5, 0).unwrap();
     assert!(kappa.intervals[0].low.at_bound && kappa.intervals[0].low.value == 0.0);
     // A narrow range is respected.
     let mut narrow = options;
-    (narrow.lower.m, narrow.upper.m) = (0.00495, 0.0050);
+    (narrow.lower[3], narrow.upper[3]) = (0.00495, 0.0050);
     let outcome = engine::fit(&samples, &narrow).unwrap();
     let m = profile(&samples, &narrow, &outcome, 3, 0).unwrap();
     assert_eq!(both(&m), [(true, true); 2]);
@@ -123,7 +122,7 @@ fn copies_are_seeded_and_spread_as_the_standard_errors() {
         bootstrap(&samples, &FitOptions { seed: 1, ..options }, &outcome, 1).unwrap()[0]
     );
     // m spreads less than its standard error says, for n and kappa have bounds.
-    let values: Vec<f64> = copies.iter().map(|params| params.rho_d).collect();
+    let values: Vec<f64> = copies.iter().map(|params| params[0]).collect();
     let mean = values.iter().sum::<f64>() / 400.0;
     let variance = values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / 399.0;
     check(
@@ -140,7 +139,7 @@ fn copies_are_seeded_and_spread_as_the_standard_errors() {
             ..Sample::in_plane(0.5, 0.2, 1.0)
         })
         .collect();
-    let grey = Params::from_array([std::f64::consts::PI, 0.0, 0.0, 0.1, 1.5, 0.0]);
+    let grey = Material::paper([std::f64::consts::PI, 0.0, 0.0, 0.1, 1.5, 0.0]);
     let noisy = copy(&flat, &grey, 0.1, &mut Noise::new(1, 2));
     let mut largest = 0.0f64;
     for (part, expected) in noisy.chunks(2000).zip([0.1, 0.05]) {

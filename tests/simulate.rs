@@ -84,7 +84,7 @@ fn simulate_refuses_what_has_no_brdf() {
         (&["--theta-i", "30", "--theta-s", "0"], "0 everywhere"),
         (
             &["--theta-i", "30", "--theta-s", "0", "--rho-d", "-1"],
-            "rho_d can not be -1",
+            "rho_d cannot be -1",
         ),
         (
             &["--theta-i", "30", "--theta-s", "0", "--rho-d", "1", "--noise", "1"],

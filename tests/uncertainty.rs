@@ -9,14 +9,14 @@ use std::f64::consts::PI;
 use brdfit::analysis::derived;
 use brdfit::analysis::reflectance::reflectance;
 use brdfit::analysis::undetermined::undetermined;
-use brdfit::engine::{self, FitOptions};
+use brdfit::engine::{self, FitOptions, Material};
 use brdfit::result::words::sentence;
-use brdfit_core::brdf::{DIFFUSE, Params, SURFACE, VOLUME};
+use brdfit_core::brdf::{DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization};
 use brdfit_core::uncertainty::{Place, Uncertainty};
 use brdfit_suite::literal;
-use brdfit_suite::scan::{data, scan};
+use brdfit_suite::scan::{data, scan, six};
 use brdfit_suite::tolerance::{self, check};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -202,7 +202,7 @@ fn reflectance_is_the_integral() {
             let params = [rho[0], rho[1], rho[2], m, n, kappa];
             let count = if m < 0.1 { 1000 } else { 500 };
             let slow = literal_reflectance(params, theta_i.to_radians(), count);
-            let fast = reflectance(&Params::from_array(params), theta_i.to_radians()).0;
+            let fast = reflectance(&Material::paper(params), theta_i.to_radians()).0;
             worst = worst.max((fast / slow - 1.0).abs());
         }
     }
@@ -216,7 +216,7 @@ fn derivatives_of_the_reflectance() {
     for theta_i in [5.0f64, 45.0, 80.0] {
         let params = [0.1, 3.0, 0.2, 0.2, 1.8, 0.7];
         let theta_i = theta_i.to_radians();
-        let (_, gradient) = reflectance(&Params::from_array(params), theta_i);
+        let (_, gradient) = reflectance(&Material::paper(params), theta_i);
         for k in 0..6 {
             let at = |factor: f64| {
                 let mut params = params;
@@ -224,7 +224,7 @@ fn derivatives_of_the_reflectance() {
                 if k == 3 {
                     literal_reflectance(params, theta_i, 400)
                 } else {
-                    reflectance(&Params::from_array(params), theta_i).0
+                    reflectance(&Material::paper(params), theta_i).0
                 }
             };
             let slope = (at(1.001) - at(0.999)) / (0.002 * params[k]);
@@ -261,9 +261,11 @@ fn peak_and_width() {
         let above: Vec<f64> = angles.filter(|&at| f(at) > 0.5 * most).collect();
         [top, most, above[above.len() - 1] - above[0] + 0.001]
     };
-    let params = outcome.params.to_array();
+    let params = six(&outcome.params);
     let [top, most, width] = table(&params);
-    let peak = derived::at(samples[0].theta_i, &outcome.params, known).peak.unwrap();
+    let peak = derived::at(samples[0].theta_i, &outcome.material(), known)
+        .peak
+        .unwrap();
     let got = peak.width.unwrap();
     let angles = [peak.theta_s.to_degrees() - top, got.value.to_degrees() - width];
     check(angles[0].abs().max(angles[1].abs()), tolerance::LOBE_ANGLES);
@@ -292,8 +294,8 @@ fn peak_and_width() {
 fn says_what_is_only_known_through_a_product() {
     let samples = scan(&data("testdata3_sym_seed1.csv"));
     let outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
-    let derived = derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty);
-    let open = undetermined(&outcome.params, &outcome.uncertainty, &derived);
+    let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
+    let open = undetermined(&outcome.material(), &outcome.uncertainty, &derived);
     assert_eq!(open.len(), 1);
     assert_eq!(open[0].parameters, ["rho_s", "rho_v", "n", "kappa"]);
     assert!(sentence(&open[0]).starts_with(
@@ -306,13 +308,13 @@ fn says_what_is_only_known_through_a_product() {
         assert!((value.value - actual).abs() < 3.0 * value.stderr && value.stderr < 0.1 * actual);
     }
     for (index, actual) in [(0, 0.15), (3, 0.005)] {
-        let error = outcome.params.to_array()[index] - actual;
+        let error = six(&outcome.params)[index] - actual;
         assert!(error.abs() < 3.0 * outcome.uncertainty.stderr[index]);
     }
     // A grey surface: nothing is known of a lobe, and everything of the reflectance.
     let grey: Vec<_> = samples.iter().map(|sample| Sample { brdf: 0.1, ..*sample }).collect();
     let outcome = engine::fit(&grey, &FitOptions::default()).unwrap();
-    let derived = derived::at_each_angle(&grey, &outcome.params, &outcome.uncertainty);
+    let derived = derived::at_each_angle(&grey, &outcome.material(), &outcome.uncertainty);
     let reflectance = derived[0].reflectance;
     assert!(tolerance::GREY.admits((reflectance.value - 0.1 * PI).abs()) && tolerance::GREY.admits(reflectance.stderr));
     assert_eq!(outcome.uncertainty.scale, 0.0);

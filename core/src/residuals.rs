@@ -6,7 +6,7 @@ use crate::brdf::{Params, get, has, slot};
 use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::microfacet::Microfacet;
-use crate::model::{GROUP, Model, SUMS, Seen};
+use crate::model::{GROUP, Model, Parameter, SUMS, Seen};
 use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
@@ -103,6 +103,18 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'
     /// Its observations.
     pub fn blocks(&self) -> &'a [Block<R, LANES, C>] {
         self.blocks
+    }
+
+    /// The bounds of the model's description on the solver's coordinates: for Eq. 14, Table 1.
+    pub fn usual_bounds() -> Bounds<R, P> {
+        let side = |of: fn(&Parameter) -> f64| {
+            let values = core::array::from_fn(|k| R::of(M::PARAMETERS.get(k).map_or(0.0, of)));
+            Self::from_values(&values)
+        };
+        Bounds {
+            lower: side(|parameter| parameter.bounds.0),
+            upper: side(|parameter| parameter.bounds.1),
+        }
     }
 
     /// Solver coordinates of the model's parameters.

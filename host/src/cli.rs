@@ -9,6 +9,7 @@ use crate::commands::{
     batch, compare, completions, converge, export, fit, joint, man, merge, paper, profile, report, simulate, stability,
 };
 use crate::error::{EXIT_CODE, Error};
+use crate::plain::{self, Lines};
 use crate::streams::{Ended, Streams};
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
@@ -64,13 +65,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
         Err(error) => return explain(&error, color, streams),
     };
     let mut nowhere = std::io::sink();
+    // Names and cells in notes and failures come from elsewhere.
+    let mut shown = Lines(streams.errors);
     let ended = dispatch(
         &cli.command,
         &arguments,
         &mut Streams {
             input: streams.input,
             output: streams.output,
-            errors: if cli.quiet { &mut nowhere } else { streams.errors },
+            errors: if cli.quiet { &mut nowhere } else { &mut shown },
             progress: streams.progress && !cli.quiet,
             color,
             quiet: cli.quiet,
@@ -79,7 +82,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
     // If even standard error is closed, the exit code remains.
     match ended {
         Ok(ended) => {
-            let _ = streams.errors.write_all(ended.why.as_bytes());
+            let _ = shown.write_all(ended.why.as_bytes());
             ended.code
         }
         Err(error) => {
@@ -115,9 +118,9 @@ fn color(arguments: &[OsString], auto: bool) -> bool {
 fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Result<Ended, Error> {
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
+        Command::Fit(arguments) => return fit::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
         Command::Report(arguments) => report::run(arguments, given, streams),
-        Command::Fit(arguments) => fit::run(arguments, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Profile(arguments) => profile::run(arguments, streams),
@@ -140,10 +143,12 @@ fn explain(error: &clap::Error, color: bool, streams: &mut Streams) -> u8 {
         streams.output
     };
     let text = error.render();
-    let _ = if color {
+    // Wrong usage is told in the user's own words, whose escapes are not for the terminal.
+    let ours = !error.use_stderr() || plain::lines(&text.to_string()) == text.to_string();
+    let _ = if color && ours {
         write!(to, "{}", text.ansi())
     } else {
-        write!(to, "{text}")
+        write!(Lines(to), "{text}")
     };
     if error.use_stderr() { EXIT_CODE } else { 0 }
 }

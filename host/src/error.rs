@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::plain::plain;
+
 /// Exit code of the program where input, options or files are at fault.
 pub const EXIT_CODE: u8 = 2;
 
@@ -67,10 +69,9 @@ impl Error {
 
     /// `file:line:column`, as far as they are known.
     fn place(&self) -> String {
-        // A file's name may hold a line break, but the message must stay one line.
-        let file = self.file.as_deref().unwrap_or("error").replace(['\n', '\r'], "?");
+        let file = plain(self.file.as_deref().unwrap_or("error"));
         match (self.line, self.column) {
-            (None, _) => file,
+            (None, _) => file.into_owned(),
             (Some(line), None) => format!("{file}:{line}"),
             (Some(line), Some(column)) => format!("{file}:{line}:{column}"),
         }
@@ -78,9 +79,11 @@ impl Error {
 
     /// What follows the place.
     fn message(&self) -> String {
+        // What is wrong may be told in words of a file, such as the name of a column.
+        let what = plain(&self.what);
         match &self.help {
-            Some(help) => format!(": {}; {help}", self.what),
-            None => format!(": {}", self.what),
+            Some(help) => format!(": {what}; {}", plain(help)),
+            None => format!(": {what}"),
         }
     }
 }
@@ -93,10 +96,10 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Foreign text inside a message: without line breaks and not too long.
+/// Foreign text inside a message: on one line, and not too long.
 pub fn shown(text: &str) -> String {
     const LONGEST: usize = 40;
-    let mut short: String = text.trim().chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    let mut short: String = plain(&text.trim().chars().take(LONGEST).collect::<String>()).into_owned();
     if text.trim().chars().nth(LONGEST).is_some() {
         short.push_str("...");
     }
@@ -121,5 +124,7 @@ mod tests {
         assert_eq!(Error::new("no").to_string(), "error: no");
         assert_eq!(Error::new("no").in_color(), "\x1b[1;31merror\x1b[0m: no");
         assert_eq!(shown(" a\nb "), "a\\nb");
+        let hostile = Error::new("a\u{1b}[2Jb").in_file("c\n\u{202e}d").help("e\rf");
+        assert_eq!(hostile.to_string(), "c\\n\\u{202e}d: a\\u{1b}[2Jb; e\\rf");
     }
 }

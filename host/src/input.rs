@@ -25,6 +25,7 @@ use brdfit_core::geometry::Sample;
 
 use crate::engine::FitError;
 use crate::error::Error;
+use crate::plain::{plain, some_of};
 pub use bytes::STDIN;
 pub use left_out::LeftOut;
 pub use options::{ReadAs, ReadOptions};
@@ -52,11 +53,17 @@ pub struct Measurement {
 impl Measurement {
     /// The file and the name of the scan in it, for people.
     pub fn label(&self) -> String {
-        match &self.name {
-            Some(name) => format!("{} [{name}]", self.file),
-            None => self.file.clone(),
-        }
+        label(&self.file, self.name.as_deref())
     }
+}
+
+/// A file and the name of a scan in it, for people.
+pub fn label(file: &str, scan: Option<&str>) -> String {
+    let label = match scan {
+        Some(scan) => format!("{file} [{scan}]"),
+        None => file.to_string(),
+    };
+    plain(&label).into_owned()
 }
 
 /// Reads every scan of every file, in order; a file may hold several.
@@ -117,7 +124,7 @@ pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Res
     if scans.len() > 1 {
         let names: Vec<&str> = scans.iter().filter_map(|scan| scan.name.as_deref()).collect();
         return Err(
-            Error::new(format!("there are {} scans: {}", scans.len(), names.join(", ")))
+            Error::new(format!("there are {} scans: {}", scans.len(), some_of(&names)))
                 .in_file(path.display().to_string())
                 .help("choose one with --column"),
         );

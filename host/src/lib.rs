@@ -6,7 +6,7 @@
 //!
 //! | Room | What it holds |
 //! |---|---|
-//! | [`error`], [`streams`], [`output`], [`interrupt`] | failures, what a command reads and writes, whole-or-nothing files |
+//! | [`error`], [`plain`], [`streams`], [`target`], [`output`], [`interrupt`] | failures, foreign text as it may be shown, what a command reads and writes, whole-or-nothing files |
 //! | [`terms`], [`parameters`], [`names`], [`number`] | words and numbers: terms, parameters and their ranges, methods, digits |
 //! | [`input`] | a file becomes one or more [`input::Measurement`]s |
 //! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
@@ -35,7 +35,9 @@ pub mod options;
 pub mod output;
 pub mod page;
 pub mod parameters;
+pub mod plain;
 pub mod plot;
 pub mod result;
 pub mod streams;
+pub mod target;
 pub mod terms;

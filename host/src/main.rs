@@ -5,9 +5,11 @@ use std::io::{IsTerminal, stderr, stdin, stdout};
 use std::process::ExitCode;
 
 use brdfit::cli::run;
+use brdfit::interrupt;
 use brdfit::streams::Streams;
 
 fn main() -> ExitCode {
+    interrupt::listen();
     ExitCode::from(run(
         env::args_os(),
         &mut Streams {

@@ -1,12 +1,12 @@
 //! What the options of the command line mean to the engine.
 
-use brdfit_core::brdf::{ALL, NAMES, Params};
+use brdfit_core::brdf::ALL;
 use clap::{Args, ValueEnum};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::engine::{FitOptions, Method, Precision};
+use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
-use crate::parameters::{Range, apply, check, parameter};
+use crate::parameters::{Range, apply, check, model, parameter};
 use crate::terms::terms;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
@@ -21,6 +21,9 @@ pub struct SearchArguments {
     /// Seed of the starts
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
+    /// The model, one of those that brdfit compare shows
+    #[arg(long, value_name = "NAME", default_value = "beckmann")]
+    model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing, or auto: the fewest that the scan supports
     #[arg(long, value_name = "LIST", default_value = "all")]
     terms: String,
@@ -59,6 +62,7 @@ impl SearchArguments {
     /// # Errors
     /// Terms or bounds that make no sense.
     pub fn fit_options(&self) -> Result<FitOptions, Error> {
+        let model = model(&self.model)?;
         let mut options = FitOptions {
             method: match self.method {
                 MethodName::Default => Method::Default,
@@ -73,12 +77,12 @@ impl SearchArguments {
             robust: self.robust,
             terms: if self.terms == AUTO { ALL } else { terms(&self.terms)? },
             choose_terms: self.terms == AUTO,
-            ..FitOptions::default()
+            ..FitOptions::of(model)
         };
-        let ranges = self.bounds.iter().map(|text| bounds(text));
-        let fixed = self.fix.iter().map(|text| fixed(text));
+        let ranges = self.bounds.iter().map(|text| bounds(model, text));
+        let fixed = self.fix.iter().map(|text| fixed(model, text, "--fix"));
         let ranges: Vec<Range> = ranges.chain(fixed).collect::<Result<_, _>>()?;
-        apply(&ranges, options.terms, &mut options.lower, &mut options.upper)?;
+        apply(&ranges, &mut options)?;
         Ok(options)
     }
 
@@ -100,15 +104,15 @@ const AUTO: &str = "auto";
 /// Reads `NAME=LO:HI`.
 ///
 /// # Errors
-/// Another form, an unknown name, the wrong order, or a value outside [`crate::parameters::domain`].
-pub fn bounds(text: &str) -> Result<Range, Error> {
+/// Another form, an unknown name, the wrong order, or a value outside the parameter's domain.
+pub fn bounds(model: &Model, text: &str) -> Result<Range, Error> {
     let form = || Error::new(format!("'{}' gives no bounds", shown(text))).help("write --bounds NAME=LO:HI");
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (lower, upper) = range.split_once(':').ok_or_else(form)?;
-    let index = parameter(name)?;
+    let index = parameter(model, name)?;
     let (lower, upper) = (number(lower)?, number(upper)?);
-    check(index, lower)?;
-    check(index, upper)?;
+    check(model, index, lower)?;
+    check(model, index, upper)?;
     if lower > upper {
         return Err(Error::new(format!("the bounds of {name} are the wrong way round"))
             .help(format!("write --bounds {name}={upper}:{lower}")));
@@ -116,16 +120,16 @@ pub fn bounds(text: &str) -> Result<Range, Error> {
     Ok(Range { index, lower, upper })
 }
 
-/// Reads `NAME=VALUE`, which holds a parameter fixed.
+/// Reads `NAME=VALUE`; `option` is what messages call it.
 ///
 /// # Errors
-/// Another form, an unknown name, or a value outside [`crate::parameters::domain`].
-pub fn fixed(text: &str) -> Result<Range, Error> {
-    let form = || Error::new(format!("'{}' fixes nothing", shown(text))).help("write --fix NAME=VALUE");
+/// Another form, an unknown name, or a value outside the parameter's domain.
+pub fn fixed(model: &Model, text: &str, option: &str) -> Result<Range, Error> {
+    let form = || Error::new(format!("'{}' fixes nothing", shown(text))).help(format!("write {option} NAME=VALUE"));
     let (name, value) = text.split_once('=').ok_or_else(form)?;
-    let index = parameter(name)?;
+    let index = parameter(model, name)?;
     let value = number(value)?;
-    check(index, value)?;
+    check(model, index, value)?;
     Ok(Range {
         index,
         lower: value,
@@ -133,34 +137,35 @@ pub fn fixed(text: &str) -> Result<Range, Error> {
     })
 }
 
-/// Reads `rho_d=0.1,rho_s=10,...`, each parameter once; `option` is what messages call it.
+/// Reads `rho_d=0.1,rho_s=10,...`, each parameter of the model once; `option` is what messages call it.
 ///
 /// # Errors
-/// A parameter is unknown, missing, given twice, or outside [`crate::parameters::domain`].
-pub fn all_parameters(list: &str, option: &str) -> Result<Params<f64>, Error> {
-    let mut values = [None; NAMES.len()];
+/// A parameter is unknown, missing, given twice, or outside its domain.
+pub fn all_parameters(model: &'static Model, list: &str, option: &str) -> Result<Material, Error> {
+    let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
+    let mut values = vec![None; names.len()];
     for member in list.split(',') {
-        let one = fixed(member).map_err(|error| match error.help {
-            Some(help) => Error::new(error.what).help(help.replace("--fix", option)),
-            None => error,
-        })?;
+        let one = fixed(model, member, option)?;
         if values[one.index].replace(one.lower).is_some() {
-            return Err(Error::new(format!("{option} gives {} twice", NAMES[one.index])).help("give it once"));
+            return Err(Error::new(format!("{option} gives {} twice", names[one.index])).help("give it once"));
         }
     }
-    let missing: Vec<&str> = (0..NAMES.len())
+    let missing: Vec<&str> = (0..names.len())
         .filter(|&k| values[k].is_none())
-        .map(|k| NAMES[k])
+        .map(|k| names[k])
         .collect();
     if !missing.is_empty() {
         return Err(
             Error::new(format!("{option} lacks {}", missing.join(", "))).help(format!(
                 "give all of {}; a lobe that is not there has rho 0",
-                NAMES.join(", ")
+                names.join(", ")
             )),
         );
     }
-    Ok(Params::from_array(values.map(Option::unwrap_or_default)))
+    Ok(Material {
+        model,
+        values: values.into_iter().map(Option::unwrap_or_default).collect(),
+    })
 }
 
 fn number(text: &str) -> Result<f64, Error> {
@@ -176,7 +181,8 @@ mod tests {
 
     #[test]
     fn refuses_bad_bounds() {
-        assert_eq!(bounds("n=1:2").unwrap().upper, 2.0);
+        let paper = Model::paper();
+        assert_eq!(bounds(paper, "n=1:2").unwrap().upper, 2.0);
         for bad in [
             "n",
             "n=1",
@@ -189,12 +195,16 @@ mod tests {
             "x=1:2",
             "n=a:b",
         ] {
-            assert!(bounds(bad).is_err(), "{bad}");
+            assert!(bounds(paper, bad).is_err(), "{bad}");
         }
+        let fixed = |text: &str| fixed(paper, text, "--fix");
         assert!(fixed("rho_d=-0.1").is_err() && fixed("rho_d").is_err());
         let (twice, other) = ([fixed("n=1.5").unwrap(); 2], [fixed("kappa=0").unwrap()]);
-        let (mut lower, mut upper) = (Params::from_array([0.0; 6]), Params::from_array([1.0; 6]));
-        assert!(apply(&twice, ALL, &mut lower, &mut upper).is_err());
-        assert!(apply(&other, DIFFUSE | SURFACE, &mut lower, &mut upper).is_err());
+        assert!(apply(&twice, &mut FitOptions::default()).is_err());
+        let mut options = FitOptions {
+            terms: DIFFUSE | SURFACE,
+            ..FitOptions::default()
+        };
+        assert!(apply(&other, &mut options).is_err());
     }
 }

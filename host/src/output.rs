@@ -1,12 +1,16 @@
-//! How results leave the program: numbers with all their digits, files that are whole or not there.
+//! How results leave the program: numbers with all their digits, and where a result goes.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 use crate::error::Error;
+use crate::input::STDIN;
+use crate::interrupt;
+use crate::plain;
+use crate::target::Target;
 
 /// In which form a result leaves, and where to: options of most commands.
 #[derive(Args, Debug)]
@@ -40,13 +44,44 @@ pub enum TableFormat {
 }
 
 impl<F: ValueEnum + Clone + Send + Sync + 'static> OutputArguments<F> {
-    /// Writes the result where it is wanted.
+    /// Where the result goes.
     ///
     /// # Errors
-    /// As [`deliver`].
-    pub fn deliver(&self, contents: &str, stream: &mut dyn Write) -> Result<(), Error> {
-        deliver(contents.as_bytes(), self.output.as_deref(), stream)
+    /// As [`target`].
+    pub fn target(&self, inputs: &[impl AsRef<Path>]) -> Result<Option<Target>, Error> {
+        target(self.output.as_deref(), inputs)
     }
+
+    /// Where the result and a picture of it go.
+    ///
+    /// # Errors
+    /// As [`target`] for both, and if they are one file.
+    pub fn targets(
+        &self,
+        picture: Option<&Path>,
+        inputs: &[impl AsRef<Path>],
+    ) -> Result<(Option<Target>, Option<Target>), Error> {
+        let result = self.target(inputs)?;
+        let picture = picture.map(|path| Target::new(path, inputs)).transpose()?;
+        let both: Vec<&Target> = result.iter().chain(&picture).collect();
+        Target::differ(&both)?;
+        Ok((result, picture))
+    }
+}
+
+/// JSON of several lines, in which each character can be seen.
+pub fn json(value: &impl Serialize) -> String {
+    // Only maps with other keys than strings, and failing writers, can make this fail.
+    let written = serde_json::to_string_pretty(value).unwrap_or_default();
+    plain::json(&written).into_owned() + "\n"
+}
+
+/// Writes a row of a table whose cells show all that is in them, and are no formulas.
+///
+/// # Errors
+/// The stream breaks.
+pub fn write_row(writer: &mut csv::Writer<impl Write>, row: &[impl AsRef<str>]) -> csv::Result<()> {
+    writer.write_record(row.iter().map(|text| plain::cell(text.as_ref()).into_owned()))
 }
 
 /// The shortest decimal form that reads back as the same number.
@@ -59,64 +94,41 @@ pub fn shortest(x: f64) -> String {
     }
 }
 
-/// Writes a file that never is there by half: to a temporary file beside it, which is then renamed.
+/// Where a result goes: a file that may be written, or standard output for none or `-`.
 ///
 /// # Errors
-/// The folder is missing or not writable, or the disk is full; what stood at `path` is then as before.
-pub fn replace_file(path: &Path, contents: &[u8]) -> Result<(), Error> {
-    replace_with(path, |file| file.write_all(contents))
+/// As [`Target::new`].
+pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option<Target>, Error> {
+    let target = path
+        .filter(|path| path.as_os_str() != STDIN)
+        .map(|path| Target::new(path, inputs))
+        .transpose()?;
+    interrupt::await_reader(target.is_none());
+    Ok(target)
 }
 
-/// The same for what is written bit by bit.
+/// Writes to a file, or to the stream if there is none.
 ///
 /// # Errors
-/// As [`replace_file`], and what `write` fails with; an [`Error`] inside its failure comes out as it is.
-pub fn replace_with(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), Error> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let buffered = |file: &File| -> io::Result<()> {
-        let mut buffer = BufWriter::new(file);
-        write(&mut buffer)?;
-        buffer.flush()
-    };
-    let all = || -> io::Result<()> {
-        // A device or a pipe, such as /dev/null, is written to and not replaced.
-        if path.metadata().is_ok_and(|there| !there.is_file() && !there.is_dir()) {
-            return buffered(&File::options().write(true).open(path)?);
-        }
-        let mut builder = tempfile::Builder::new();
-        // Private by default; a result is an ordinary file, so the user's mask decides.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.prefix(".brdfit-").tempfile_in(folder)?;
-        buffered(file.as_file())?;
-        file.as_file().sync_all()?;
-        file.persist(path)?;
-        Ok(())
-    };
-    all().map_err(|error| match error.downcast::<Error>() {
-        Ok(own) => own,
-        Err(error) => Error::new(format!("can not be written: {error}"))
-            .in_file(path.display().to_string())
-            .help("check that the folder is there and writable"),
-    })
+/// As [`Target::write`], and if the stream breaks; a reader that wants no more, such as `head`, is no error.
+pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write) -> Result<(), Error> {
+    match target {
+        Some(target) => target.write(contents),
+        None => to_stream(stream, |stream| stream.write_all(contents)),
+    }
 }
 
-/// Writes to `path`, or to the stream if there is none or it is `-`.
+/// Writes to standard output.
 ///
 /// # Errors
-/// As [`replace_file`], and if the stream breaks; a reader that wants no more, such as `head`, is no error.
-pub fn deliver(contents: &[u8], path: Option<&Path>, stream: &mut dyn Write) -> Result<(), Error> {
-    match path.filter(|path| path.as_os_str() != "-") {
-        Some(path) => replace_file(path, contents),
-        None => match stream.write_all(contents).and_then(|()| stream.flush()) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(Error::new(format!("standard output can not be written: {error}")))
-            }
-            _ => Ok(()),
-        },
+/// The stream breaks, or what `write` fails with; a reader that wants no more, such as `head`, is no error.
+pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
+    interrupt::await_reader(false);
+    match write(stream).and_then(|()| stream.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error
+            .downcast::<Error>()
+            .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}")))),
+        _ => Ok(()),
     }
 }
 

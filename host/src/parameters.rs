@@ -1,14 +1,14 @@
-//! The parameters of the model: their names, what values they can have, and bounds.
+//! The parameters of a model: what values they can have, and bounds.
 
-use brdfit_core::brdf::{NAMES, Params, has};
-
+use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
+use crate::output::shortest;
 use crate::terms::term_names;
 
 /// A permitted range of one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Place in [`NAMES`].
+    /// Place among the parameters of the model.
     pub index: usize,
     /// Least value.
     pub lower: f64,
@@ -16,62 +16,60 @@ pub struct Range {
     pub upper: f64,
 }
 
-/// The least and the largest value that parameter `index` of [`NAMES`] can have at all.
-///
-/// Physics gives rho >= 0, m > 0, n >= 1 and kappa >= 0; the other ends keep the arithmetic of `f32` finite.
-pub fn domain(index: usize) -> (f64, f64) {
-    const LARGEST: f64 = 1e6;
-    match NAMES[index] {
-        "m" => (1e-6, LARGEST),
-        "n" => (1.0, LARGEST),
-        _ => (0.0, LARGEST),
-    }
-}
-
-/// Refuses a value that parameter `index` can not have.
+/// Refuses a value that parameter `index` of the model cannot have.
 ///
 /// # Errors
-/// The value is NaN or outside [`domain`].
-pub fn check(index: usize, value: f64) -> Result<(), Error> {
-    let (least, largest) = domain(index);
+/// The value is NaN or outside the parameter's domain.
+pub fn check(model: &Model, index: usize, value: f64) -> Result<(), Error> {
+    let parameter = &model.parameters[index];
+    let (least, largest) = parameter.domain;
     if value >= least && value <= largest {
         return Ok(());
     }
-    Err(Error::new(format!("{} can not be {value}", NAMES[index]))
+    Err(Error::new(format!("{} cannot be {}", parameter.name, shortest(value)))
         .help(format!("take a number from {least} to {largest}")))
 }
 
 /// Narrows or widens the bounds of the model's parameters to `ranges`.
 ///
 /// # Errors
-/// A parameter is named twice, or is not part of `terms`.
-pub fn apply(ranges: &[Range], terms: u8, lower: &mut Params<f64>, upper: &mut Params<f64>) -> Result<(), Error> {
-    let (mut least, mut largest) = (lower.to_array(), upper.to_array());
+/// A parameter is named twice, or is not part of the terms.
+pub fn apply(ranges: &[Range], options: &mut FitOptions) -> Result<(), Error> {
     for (place, range) in ranges.iter().enumerate() {
-        let name = NAMES[range.index];
+        let name = options.model.parameters[range.index].name;
         if ranges[..place].iter().any(|other| other.index == range.index) {
             return Err(Error::new(format!("{name} is bounded or fixed twice")).help("keep one of the options"));
         }
-        if !has(terms, range.index) {
-            let names = term_names(terms).join(",");
+        if options.model.left_out(options.terms, range.index) {
+            let names = term_names(options.terms).join(",");
             return Err(Error::new(format!("{name} is no parameter of the terms {names}"))
                 .help("leave out its --bounds or --fix, or take more --terms"));
         }
-        least[range.index] = range.lower;
-        largest[range.index] = range.upper;
+        options.lower[range.index] = range.lower;
+        options.upper[range.index] = range.upper;
     }
-    (*lower, *upper) = (Params::from_array(least), Params::from_array(largest));
     Ok(())
 }
 
-/// The place of a parameter in [`NAMES`].
+/// The place of a parameter of the model.
 ///
 /// # Errors
 /// There is none of this name.
-pub fn parameter(name: &str) -> Result<usize, Error> {
-    let known = NAMES.iter().position(|known| *known == name.trim());
-    known.ok_or_else(|| {
+pub fn parameter(model: &Model, name: &str) -> Result<usize, Error> {
+    model.place(name.trim()).ok_or_else(|| {
+        let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
         Error::new(format!("there is no parameter '{}'", shown(name)))
-            .help(format!("the parameters are {}", NAMES.join(", ")))
+            .help(format!("the parameters are {}", names.join(", ")))
+    })
+}
+
+/// The model of this name.
+///
+/// # Errors
+/// There is none of this name.
+pub fn model(name: &str) -> Result<&'static Model, Error> {
+    Model::find(name.trim()).ok_or_else(|| {
+        let names: Vec<&str> = crate::engine::models::MODELS.iter().map(|model| model.name).collect();
+        Error::new(format!("there is no model '{}'", shown(name))).help(format!("the models are {}", names.join(", ")))
     })
 }

@@ -17,7 +17,7 @@ mod waterfall;
 
 pub use albedo::albedo_svg;
 pub use converge::converge_svg;
-pub use curve::{LnF, eq_14};
+pub use curve::{LnF, of};
 pub use overlay::{Overlay, overlay_svg};
 pub use polar::polar_svg;
 pub use profile::profile_svg;

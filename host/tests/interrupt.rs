@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::io::Read;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -79,4 +80,96 @@ fn what_is_done_is_kept() {
         assert!(fs::read(&out).unwrap() == fs::read(&whole).unwrap(), "{signal}");
         fs::remove_file(&out).unwrap();
     }
+}
+
+/// A command of which the search takes hours, with its streams.
+fn endless(arguments: &[&str], folder: &Path) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_brdfit"));
+    command.args(arguments).current_dir(folder);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Waits until the program answers interrupts.
+fn listens(child: &mut Child) {
+    let status = format!("/proc/{}/status", child.id());
+    let caught = || {
+        let status = fs::read_to_string(&status).unwrap_or_default();
+        let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        mask.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() >> 1 & 1 == 1)
+    };
+    while !caught() {
+        assert!(child.try_wait().unwrap().is_none(), "ended before it was interrupted");
+        sleep(Duration::from_millis(1));
+    }
+    // Until it is at work.
+    sleep(Duration::from_millis(300));
+}
+
+fn signal(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.unwrap().success());
+}
+
+/// How it ended, and what it had written to both streams; hours are too long.
+fn ended(mut child: Child) -> (Option<i32>, String, String) {
+    for _ in 0..6000 {
+        if let Some(status) = child.try_wait().unwrap() {
+            let (mut output, mut errors) = (String::new(), String::new());
+            if let Some(mut stream) = child.stdout.take() {
+                stream.read_to_string(&mut output).unwrap();
+            }
+            child.stderr.take().unwrap().read_to_string(&mut errors).unwrap();
+            return (status.code(), output, errors);
+        }
+        sleep(Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    panic!("it did not end");
+}
+
+const LONG: [&str; 4] = ["--method", "paper", "--starts", "1000000"];
+
+#[cfg(target_os = "linux")]
+#[test]
+fn every_command_ends_and_says_what_is_left() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = scans(root.path());
+    for arguments in [
+        &[&["fit", "00.csv", "--output", "out.csv", "--format", "csv"], &LONG[..]].concat()[..],
+        &[&["report", "00.csv", "--output", "out.html"], &LONG[..]].concat(),
+        &["profile", "00.csv", "--bootstrap", "1000000"],
+        &["converge", "00.csv", "--seeds", "10000"],
+        &["paper", "--starts", "1000000"],
+    ] {
+        let mut child = endless(arguments, &folder);
+        listens(&mut child);
+        signal(&child, "-INT");
+        let (code, output, errors) = ended(child);
+        assert_eq!(code, Some(130), "{arguments:?}: {errors}");
+        assert_eq!(
+            (output.as_str(), errors.as_str()),
+            ("", "interrupted: nothing was written\n")
+        );
+    }
+    // No result, no temporary file.
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 40);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_nobody_reads_is_not_waited_for() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = scans(root.path());
+    for command in [&["fit", "00.csv"][..], &["batch", ".", "--out", "-"]] {
+        let mut child = endless(&[command, &LONG[..]].concat(), &folder);
+        listens(&mut child);
+        drop(child.stdout.take());
+        let (code, _, errors) = ended(child);
+        assert_eq!(code, Some(2), "{errors}");
+        assert_eq!(errors, "standard output was closed before there was a result\n");
+    }
+    // A result that goes to a file does not need a reader.
+    let mut child = endless(&["batch", ".", "--out", "../out.csv"], &folder);
+    drop(child.stdout.take());
+    assert_eq!(ended(child).0, Some(0));
 }

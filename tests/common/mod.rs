@@ -16,3 +16,4 @@ pub mod reference;
 pub mod scan;
 pub mod tolerance;
 pub mod valley;
+pub mod written;

@@ -44,3 +44,8 @@ pub fn scan(path: &Path) -> Vec<Sample<f64>> {
 pub fn number(cell: &str) -> f64 {
     cell.parse().unwrap_or_else(|_| panic!("`{cell}` is not a number"))
 }
+
+/// The parameters of Eq. 14 in the order of their names.
+pub fn six(values: &[f64]) -> [f64; 6] {
+    values.try_into().expect("Eq. 14 has six parameters")
+}

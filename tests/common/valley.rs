@@ -1,10 +1,10 @@
 //! How many passes a fit takes to the end of its valley, with and without bent steps.
 
-use brdfit::engine::{FitOptions, blocks};
+use brdfit::engine::blocks;
 use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{Linearization, Options, Problem, Stop, fit};
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 use crate::scan::{data, scan};
 
@@ -41,8 +41,7 @@ impl Problem<f64, 6> for Straight<'_> {
 pub fn passes_to_the_end(set: u32, kind: &str, bent: bool) -> Passes {
     let blocks = blocks::<f64>(&scan(&data(&format!("testdata{set}_{kind}.csv")))).expect("a valid scan");
     let scene = Scan::<f64, ALL, 6>::new(&blocks);
-    let limits = FitOptions::default();
-    let bounds = Scan::<f64, ALL, 6>::bounds(&limits.lower, &limits.upper);
+    let bounds = Scan::<f64, ALL, 6>::usual_bounds();
     let options = Options {
         max_passes: 20_000,
         ..Options::default()
@@ -50,7 +49,7 @@ pub fn passes_to_the_end(set: u32, kind: &str, bent: bool) -> Passes {
     let mut lost = 0;
     let mut passes = Vec::new();
     for i in 0..FITS {
-        let start = scene.candidate(&bounds, 0, i, None).x;
+        let start = scene.candidate(&bounds, 0, i, Region::Everywhere).x;
         let fit = if bent {
             fit(&scene, &bounds, start, &options)
         } else {

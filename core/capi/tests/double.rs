@@ -6,7 +6,7 @@ use std::mem::zeroed;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
-use brdfit::engine::{self, FitOptions, Precision, TERM_SETS};
+use brdfit::engine::{self, FitOptions, Precision, TERM_SETS, Values};
 use brdfit_capi::brdfit_error as Error;
 use brdfit_capi::*;
 use brdfit_core::brdf::{ALL, Brdf, Params};
@@ -77,9 +77,10 @@ fn usual() -> brdfit_options<f64> {
     }
 }
 
-fn same(c: brdfit_params<f64>, rust: Params<f64>) {
+fn same(c: brdfit_params<f64>, host: Values) {
     let bits = Params::from(c).to_array().map(|value| f64::from(value).to_bits());
-    assert_eq!(bits, rust.to_array().map(f64::to_bits));
+    let host: Vec<u64> = host.iter().map(|value| value.to_bits()).collect();
+    assert_eq!(bits.as_slice(), host);
 }
 
 #[test]

@@ -2,7 +2,9 @@
 //!
 //! Only the passes are compiled for each model; a search sees them through one dynamic call a pass, and is compiled once for each number of parameters.
 
+use brdfit_core::brdf::ALL;
 use brdfit_core::geometry::{Block, LANES, Sample};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::{Model, Parameter};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::{Residuals, ln_f, observe};
@@ -53,11 +55,19 @@ pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const
     }
 }
 
-/// The samples of a scan in the number type of the fit, as blocks for model `M`.
+/// The samples of a scan in the number type of the fit, as blocks for Eq. 14.
 ///
 /// # Errors
 /// [`FitError::Sample`].
-pub fn blocks<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
+pub fn blocks<R: Real>(samples: &[Sample<f64>]) -> Result<Vec<Block<R>>, FitError> {
+    blocks_of::<R, Microfacet<ALL>, 6, 6>(samples)
+}
+
+/// The same for model `M`.
+///
+/// # Errors
+/// [`FitError::Sample`].
+pub fn blocks_of<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
     samples: &[Sample<f64>],
 ) -> Result<Vec<Block<R, LANES, C>>, FitError> {
     let mut blocks = vec![Block::EMPTY; samples.len().div_ceil(LANES)];
@@ -92,12 +102,12 @@ fn fit<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
 ) -> Result<Outcome, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let exact = blocks::<f64, M, P, C>(samples)?;
+    let exact = blocks_of::<f64, M, P, C>(samples)?;
     let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
     match options.precision {
         Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options),
         Precision::F32 => {
-            let blocks = blocks::<f32, M, P, C>(samples)?;
+            let blocks = blocks_of::<f32, M, P, C>(samples)?;
             let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
             search::run::<f32, P>(&scene, &exact, own, samples, options)
         }
@@ -109,7 +119,7 @@ fn descend<M: Both<P, C>, const P: usize, const C: usize>(
     options: &FitOptions,
     starts: &[Values],
 ) -> Result<Option<(f64, Values)>, FitError> {
-    let blocks = blocks::<f64, M, P, C>(samples)?;
+    let blocks = blocks_of::<f64, M, P, C>(samples)?;
     let scene = scene::<f64, M, P, C, true>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     Ok(search::descend_from::<P>(&scene, own, options, starts))
@@ -121,12 +131,12 @@ fn trace<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
 ) -> Result<Trace, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let exact = blocks::<f64, M, P, C>(samples)?;
+    let exact = blocks_of::<f64, M, P, C>(samples)?;
     let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
     match options.precision {
         Precision::F64 => Ok(trace::watch::<f64, P>(&exact, &exact, own, options)),
         Precision::F32 => {
-            let blocks = blocks::<f32, M, P, C>(samples)?;
+            let blocks = blocks_of::<f32, M, P, C>(samples)?;
             let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
             Ok(trace::watch::<f32, P>(&scene, &exact, own, options))
         }
@@ -139,7 +149,7 @@ fn joint<M: Both<P, C>, const P: usize, const C: usize>(
     options: &FitOptions,
 ) -> Result<joint::Fitted, (usize, FitError)> {
     let each = all.iter().enumerate();
-    let each = each.map(|(place, samples)| blocks::<f64, M, P, C>(samples).map_err(|error| (place, error)));
+    let each = each.map(|(place, samples)| blocks_of::<f64, M, P, C>(samples).map_err(|error| (place, error)));
     let blocks: Vec<_> = each.collect::<Result<_, _>>()?;
     let scans: Vec<_> = blocks
         .iter()

@@ -6,6 +6,7 @@
 
 mod compiled;
 mod layout;
+mod material;
 mod model;
 mod options;
 mod outcome;
@@ -19,7 +20,8 @@ pub mod simd;
 pub mod trace;
 pub mod uncertainty;
 
-pub use compiled::{Kernel, blocks};
+pub use compiled::{Kernel, blocks, blocks_of};
+pub use material::Material;
 pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
 pub use outcome::{FitError, Minimum, Outcome};

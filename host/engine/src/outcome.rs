@@ -6,7 +6,7 @@ use brdfit_core::search::Evaluations;
 
 use crate::robust::Robust;
 use crate::uncertainty::Uncertainty;
-use crate::{Model, Values};
+use crate::{Material, Model, Values};
 
 /// One distinct minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +69,14 @@ impl Outcome {
     /// Places of the parameters that are part of the terms.
     pub fn present(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.params.len()).filter(|&place| !self.model.left_out(self.terms, place))
+    }
+
+    /// The best fit.
+    pub fn material(&self) -> Material {
+        Material {
+            model: self.model,
+            values: self.params,
+        }
     }
 
     /// The value of the parameter of this name, if the model has it.

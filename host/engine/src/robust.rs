@@ -1,7 +1,6 @@
 //! A fit that outliers do not draw: they are found by repeated searches with Cauchy's weights, and left out of the last ones.
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 
 use crate::{FitError, FitOptions, Outcome};
 
@@ -49,7 +48,12 @@ pub fn fit(
     // What the last fit left out, if it was one of least squares.
     let mut left_out: Option<Vec<usize>> = None;
     for round in 0..ROUNDS {
-        let residuals: Vec<f64> = samples.iter().map(|sample| residual(&outcome, sample)).collect();
+        let material = outcome.material();
+        let residuals: Vec<f64> = samples
+            .iter()
+            // A sample that was fitted is above the horizon.
+            .map(|sample| material.residual(sample).unwrap_or(0.0))
+            .collect();
         let scale = scale(&residuals);
         let is_outlier = |residual: f64| residual.abs() > OUTLIER * scale;
         let outliers: Vec<usize> = (0..samples.len()).filter(|&k| is_outlier(residuals[k])).collect();
@@ -74,13 +78,6 @@ pub fn fit(
     }
     outcome.evaluations = evaluations;
     Ok(outcome)
-}
-
-/// Model less measurement in ln f, times the sample's weight.
-fn residual(outcome: &Outcome, sample: &Sample<f64>) -> f64 {
-    // A sample that was fitted is above the horizon.
-    let ln_f = outcome.model.ln_f(&outcome.params, sample);
-    ln_f.map_or(0.0, |ln_f| sample.weight * (ln_f - Real::ln(sample.brdf)))
 }
 
 /// The median of the sizes as a standard deviation; above 0.

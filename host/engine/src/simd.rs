@@ -1,6 +1,7 @@
 //! Runs the passes over a scan on the widest vectors that the processor has; the bits do not depend on it.
 
 use brdfit_core::lm::{Bounds, Linearization, Problem};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Residuals;
@@ -66,6 +67,9 @@ pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const WIDE: bo
     /// The instructions.
     pub simd: Simd,
 }
+
+/// The same for `TERMS` of Eq. 14.
+pub type FastEq14<'a, R, const TERMS: u8, const P: usize> = FastScan<'a, R, Microfacet<TERMS>, P>;
 
 struct Cost<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Cost<'_, R, M, P, C> {

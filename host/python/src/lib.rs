@@ -5,10 +5,10 @@
 mod scans;
 mod settings;
 
-use brdfit::engine::{self, FitError, FitOptions, Method, Outcome};
+use brdfit::engine::{self, FitError, FitOptions, Method, Model, Outcome, Values};
 use brdfit::input::azimuth;
 use brdfit::parameters::check;
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::lm::Stop;
 use brdfit_core::real::Real;
@@ -60,8 +60,8 @@ fn fit<'py>(py: Python<'py>, arrays: Arrays<'py>, settings: Settings) -> PyResul
     });
     let outcome = outcome.map_err(PyValueError::new_err)?;
     let result = PyDict::new(py);
-    result.set_item("x", outcome.params.to_array().to_vec().into_pyarray(py))?;
-    result.set_item("cov", Array2::from(outcome.uncertainty.cov.to_vec()).into_pyarray(py))?;
+    result.set_item("x", outcome.params.to_vec().into_pyarray(py))?;
+    result.set_item("cov", square(&outcome.uncertainty.cov).into_pyarray(py))?;
     result.set_item("stderr", outcome.uncertainty.stderr.to_vec().into_pyarray(py))?;
     result.set_item("fun", outcome.cost)?;
     result.set_item("mse2", outcome.mse2)?;
@@ -70,7 +70,7 @@ fn fit<'py>(py: Python<'py>, arrays: Arrays<'py>, settings: Settings) -> PyResul
     result.set_item("at_bound", &outcome.at_bound)?;
     let minima = outcome.minima.iter();
     let minima: Vec<_> = minima
-        .map(|it| (it.mse2, it.params.to_array().to_vec().into_pyarray(py), it.hits))
+        .map(|it| (it.mse2, it.params.to_vec().into_pyarray(py), it.hits))
         .collect();
     result.set_item("minima", minima)?;
     Ok(result)
@@ -131,11 +131,16 @@ fn fit_many<'py>(
     Ok(result)
 }
 
+/// A square matrix by its rows.
+fn square(rows: &[Values]) -> Array2<f64> {
+    Array2::from_shape_fn((rows.len(), rows.len()), |(i, j)| rows[i][j])
+}
+
 /// What is kept of the fit of one scan of many.
 struct Row {
-    x: [f64; 6],
-    cov: [[f64; 6]; 6],
-    stderr: [f64; 6],
+    x: Values,
+    cov: Vec<Values>,
+    stderr: Values,
     fun: f64,
     mse2: f64,
     status: u8,
@@ -146,18 +151,18 @@ fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions) -> 
     let samples = scans.samples(scan, drop_invalid)?;
     match engine::fit(&samples, options) {
         Ok(outcome) => Ok(Row {
-            x: outcome.params.to_array(),
-            cov: outcome.uncertainty.cov,
-            stderr: outcome.uncertainty.stderr,
+            x: outcome.params,
             fun: outcome.cost,
             mse2: outcome.mse2,
             status: status(&outcome),
             minima: outcome.minima.len() as u8,
+            stderr: outcome.uncertainty.stderr,
+            cov: outcome.uncertainty.cov,
         }),
         Err(FitError::TooFew(..)) if drop_invalid => Ok(Row {
-            x: [f64::NAN; 6],
-            cov: [[f64::NAN; 6]; 6],
-            stderr: [f64::NAN; 6],
+            x: [f64::NAN; 6].into(),
+            cov: vec![[f64::NAN; 6].into(); 6],
+            stderr: [f64::NAN; 6].into(),
             fun: f64::NAN,
             mse2: f64::NAN,
             status: TOO_FEW,
@@ -196,9 +201,9 @@ fn brdf<'py>(
             return Ok(f64::NAN);
         }
         for (k, value) in x.into_iter().enumerate() {
-            check(k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
+            check(Model::paper(), k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
         }
-        let ln_f = engine::ln_f(&Params::from_array(x), &geometry);
+        let ln_f = Brdf::<f64, ALL>::new(&Params::from_array(x)).ln_f(&geometry);
         // Below this the exponential is no normal number.
         const LEAST_LN: f64 = -708.0;
         Ok(match ln {

@@ -54,7 +54,7 @@ impl Scans<'_> {
     /// With `drop_invalid` false, what is wrong with the first sample that is not valid.
     pub fn samples(&self, scan: usize, drop_invalid: bool) -> Result<Vec<Sample<f64>>, String> {
         let mut samples = Vec::with_capacity(self.brdf.ncols());
-        let mut weights = weight::Sum::default();
+        let mut weights = weight::Count::default();
         for index in 0..self.brdf.ncols() {
             let at = [scan, index];
             let sample = Sample {
@@ -65,7 +65,7 @@ impl Scans<'_> {
                 weight: self.weight(at),
             };
             if Observation::new(&sample).is_ok() && sample.weight > 0.0 {
-                weights.add(sample.weight, Source::Sigma);
+                weights.add(Source::Sigma);
                 samples.push(sample);
             } else if !drop_invalid {
                 return Err(self.fault(scan, index));

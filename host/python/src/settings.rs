@@ -1,9 +1,8 @@
 //! What the keyword arguments mean to the engine.
 
-use brdfit::engine::{FitOptions, Method, TERM_SETS};
-use brdfit::parameters::{Range, apply, check, domain};
+use brdfit::engine::{FitOptions, Method, Model, TERM_SETS};
+use brdfit::parameters::{Range, apply, check};
 use brdfit::terms;
-use brdfit_core::brdf::NAMES;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -39,7 +38,7 @@ impl Settings {
             ..FitOptions::default()
         };
         let ranges: Vec<Range> = self.bounds.iter().map(range).collect::<PyResult<_>>()?;
-        apply(&ranges, options.terms, &mut options.lower, &mut options.upper)
+        apply(&ranges, &mut options)
             .map_err(|error| refuse(&error.what, "leave it out of bounds, or take more terms"))?;
         Ok(options)
     }
@@ -53,16 +52,17 @@ fn terms(names: &[String]) -> PyResult<u8> {
 }
 
 fn range((name, lower, upper): &(String, f64, f64)) -> PyResult<Range> {
-    let known = NAMES.iter().position(|known| known == name);
-    let index = known.ok_or_else(|| {
-        let help = format!("the parameters are {}", NAMES.join(", "));
+    let model = Model::paper();
+    let index = model.place(name).ok_or_else(|| {
+        let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
+        let help = format!("the parameters are {}", names.join(", "));
         refuse(&format!("there is no parameter {name:?}"), &help)
     })?;
     let (lower, upper) = (*lower, *upper);
     for value in [lower, upper] {
-        let (least, largest) = domain(index);
+        let (least, largest) = model.parameters[index].domain;
         let help = format!("bounds take numbers from {least} to {largest}");
-        check(index, value).map_err(|error| refuse(&error.what, &help))?;
+        check(model, index, value).map_err(|error| refuse(&error.what, &help))?;
     }
     if lower > upper {
         let help = format!("write \"{name}\": ({upper}, {lower})");

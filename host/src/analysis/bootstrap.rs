@@ -1,13 +1,12 @@
 //! Parametric bootstrap: the same scan measured again and again, in the computer.
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-use crate::engine::{self, FitError, FitOptions, Outcome};
+use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 
 /// Random numbers of copy `copy` of `seed`: a function of both alone, whatever thread draws them.
 #[derive(Clone, Debug)]
@@ -34,12 +33,11 @@ impl Noise {
 }
 
 /// The model at the angles of `samples`, with normal errors of ln f of standard deviation `scale` over the sample's weight.
-pub fn copy(samples: &[Sample<f64>], params: &Params<f64>, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
+pub fn copy(samples: &[Sample<f64>], material: &Material, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
     // The exponential is a normal number within this.
     const LARGEST_LN: f64 = 700.0;
     let one = |sample: &Sample<f64>| {
-        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi);
-        let ln_f = geometry.map_or(0.0, |geometry| engine::ln_f(params, &geometry));
+        let ln_f = material.ln_f(sample).unwrap_or(0.0);
         let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
         let ln_f = ln_f + scale / weight * noise.normal();
         Sample {
@@ -59,10 +57,10 @@ pub fn bootstrap(
     options: &FitOptions,
     outcome: &Outcome,
     count: u32,
-) -> Result<Vec<Params<f64>>, FitError> {
+) -> Result<Vec<Values>, FitError> {
     let one = |k: u32| {
         let mut noise = Noise::new(options.seed, u64::from(k));
-        let copy = copy(samples, &outcome.params, outcome.uncertainty.scale, &mut noise);
+        let copy = copy(samples, &outcome.material(), outcome.uncertainty.scale, &mut noise);
         Ok(engine::fit(&copy, options)?.params)
     };
     (0..count).into_par_iter().map(one).collect()

@@ -1,6 +1,6 @@
 //! The smallest set of terms that a scan supports.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, NAMES, SURFACE, VOLUME, has};
+use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -93,47 +93,72 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<(FitOptions,
 
 /// Do the bounds permit what the set leaves out?
 fn allowed(terms: u8, options: &FitOptions) -> bool {
-    let lower = options.lower.to_array();
-    let lobes = terms & (SURFACE | VOLUME) != 0;
-    (0..NAMES.len()).all(|index| {
-        let left_out = !has(terms, index) && (lobes || index < 3);
-        !left_out || lower[index] <= 0.0
+    (0..options.lower.len()).all(|place| {
+        let matters = options.model.absent(place) == 0.0;
+        !(options.model.left_out(terms, place) && matters) || options.lower[place] <= 0.0
     })
 }
 
-fn judge(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, smaller: Option<Candidate>) -> Candidate {
-    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
-    let free = (0..NAMES.len()).filter(|&index| has(options.terms, index) && lower[index] < upper[index]);
-    let parameters = free.count();
+/// What a fit is judged by, beside others of the same samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Criteria {
+    /// Number of its free parameters.
+    pub parameters: usize,
+    /// Samples of weight above 0.
+    pub samples: f64,
+    /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
+    pub aicc: f64,
+    /// Schwarz's criterion.
+    pub bic: f64,
+}
+
+/// The criteria of a fit of this cost.
+pub fn criteria(samples: &[Sample<f64>], options: &FitOptions, cost: f64) -> Criteria {
+    let parameters = options.free().count();
     let samples = samples.iter().filter(|sample| sample.weight != 0.0).count() as f64;
-    // Residuals below this are rounding, of which no criterion may make anything.
-    let rounding = match options.precision {
-        Precision::F64 => 1e-10,
-        Precision::F32 => 1e-5,
-    };
-    let cost = outcome.cost.max(samples * rounding * rounding);
+    let cost = cost.max(rounding(samples, options));
     // The variance of the residuals is a parameter too.
     let k = parameters as f64 + 1.0;
     let deviance = samples * Real::ln(cost / samples);
     let room = samples - k - 1.0;
-    let p_value = smaller
-        .filter(|smaller| smaller.parameters < parameters)
-        .and_then(|smaller| {
-            let more = (parameters - smaller.parameters) as f64;
-            let left = samples - parameters as f64;
-            let f = (smaller.cost.max(cost) - cost) / more / (cost / left);
-            FisherSnedecor::new(more, left).ok().map(|chance| chance.sf(f))
-        });
-    Candidate {
-        terms: options.terms,
+    Criteria {
         parameters,
-        cost: outcome.cost,
+        samples,
         aicc: if room > 0.0 {
             deviance + 2.0 * k + 2.0 * k * (k + 1.0) / room
         } else {
             f64::INFINITY
         },
         bic: deviance + k * Real::ln(samples),
+    }
+}
+
+/// A cost below this is rounding, of which no criterion may make anything.
+fn rounding(samples: f64, options: &FitOptions) -> f64 {
+    let residual = match options.precision {
+        Precision::F64 => 1e-10,
+        Precision::F32 => 1e-5,
+    };
+    samples * residual * residual
+}
+
+fn judge(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, smaller: Option<Candidate>) -> Candidate {
+    let criteria = criteria(samples, options, outcome.cost);
+    let cost = outcome.cost.max(rounding(criteria.samples, options));
+    let p_value = smaller
+        .filter(|smaller| smaller.parameters < criteria.parameters)
+        .and_then(|smaller| {
+            let more = (criteria.parameters - smaller.parameters) as f64;
+            let left = criteria.samples - criteria.parameters as f64;
+            let f = (smaller.cost.max(cost) - cost) / more / (cost / left);
+            FisherSnedecor::new(more, left).ok().map(|chance| chance.sf(f))
+        });
+    Candidate {
+        terms: options.terms,
+        parameters: criteria.parameters,
+        cost: outcome.cost,
+        aicc: criteria.aicc,
+        bic: criteria.bic,
         p_value,
     }
 }

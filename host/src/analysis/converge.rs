@@ -2,14 +2,12 @@
 
 use std::f64::consts::LOG10_E;
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use serde::Serialize;
 
-use crate::engine::ln_f;
 use crate::engine::trace::{Record, Trace, passes, trace};
-use crate::engine::{FitError, FitOptions, Method, Precision};
+use crate::engine::{FitError, FitOptions, Material, Method, Precision};
 use crate::names;
 
 /// What is compared.
@@ -38,8 +36,8 @@ pub struct ScanStudy {
     pub samples: usize,
     /// The least MSE^2 (Eq. 17) that any run found.
     pub best_mse2: f64,
-    /// The parameters that the scan was made with, if known, in the order of [`brdfit_core::brdf::NAMES`].
-    pub truth: Option<[f64; 6]>,
+    /// The parameters that the scan was made with, if known, in their order.
+    pub truth: Option<Vec<f64>>,
     /// In the order of [`METHODS`].
     pub methods: Vec<MethodStudy>,
 }
@@ -114,8 +112,8 @@ pub struct Band {
 pub fn study(
     name: &str,
     samples: &[Sample<f64>],
-    truth: Option<&Params<f64>>,
-    terms: u8,
+    truth: Option<&Material>,
+    asked: &FitOptions,
     seeds: u32,
     mut begin: impl FnMut(),
 ) -> Result<ScanStudy, FitError> {
@@ -128,8 +126,7 @@ pub fn study(
                 method,
                 precision,
                 seed: u64::from(seed),
-                terms,
-                ..FitOptions::default()
+                ..*asked
             };
             let mut fastest = trace(samples, &options)?;
             for _ in 1..REPEATS {
@@ -148,14 +145,14 @@ pub fn study(
         best,
         // A scan without noise has an optimum of rounding errors only, to which nothing can be compared.
         unit: best.max(1e-24 * count),
-        truth: truth.map(|params| Truth::new(params, samples)),
+        truth: truth.map(|truth| Truth::new(truth, samples)),
     };
     let methods = METHODS.iter().zip(&traces);
     Ok(ScanStudy {
         name: name.to_string(),
         samples: samples.len(),
         best_mse2: best / (count * count),
-        truth: truth.map(|params| params.to_array()),
+        truth: truth.map(|truth| truth.values.to_vec()),
         methods: methods
             .map(|(&method, traces)| summary(method, traces, &errors))
             .collect(),
@@ -164,18 +161,16 @@ pub fn study(
 
 /// The truth with its ln f at each sample.
 struct Truth {
-    params: Params<f64>,
-    curve: Vec<(Geometry<f64>, f64)>,
+    material: Material,
+    curve: Vec<(Sample<f64>, f64)>,
 }
 
 impl Truth {
-    fn new(params: &Params<f64>, samples: &[Sample<f64>]) -> Truth {
-        let geometries = samples
-            .iter()
-            .filter_map(|s| Geometry::new(s.theta_i, s.theta_s, s.delta_phi).ok());
+    fn new(material: &Material, samples: &[Sample<f64>]) -> Truth {
+        let curve = samples.iter().filter_map(|s| Some((*s, material.ln_f(s)?)));
         Truth {
-            params: *params,
-            curve: geometries.map(|geometry| (geometry, ln_f(params, &geometry))).collect(),
+            material: *material,
+            curve: curve.collect(),
         }
     }
 }
@@ -190,20 +185,21 @@ impl Errors {
     /// Excess cost, and of rho_d, m and the curve.
     fn of(&self, record: &Record) -> [f64; 4] {
         let excess = (record.cost - self.best) / self.unit;
-        let Some(Truth { params, curve }) = &self.truth else {
+        let Some(Truth { material, curve }) = &self.truth else {
             return [excess, 0.0, 0.0, 0.0];
         };
         let relative = |x: f64, t: f64| (x - t).abs() / if t == 0.0 { 1.0 } else { t };
-        let squares = curve.iter().map(|(geometry, true_ln)| {
-            let difference = ln_f(&record.params, geometry) - true_ln;
-            difference * difference
+        let found = Material {
+            values: record.params,
+            ..*material
+        };
+        let squares = curve.iter().filter_map(|(sample, true_ln)| {
+            let difference = found.ln_f(sample)? - true_ln;
+            Some(difference * difference)
         });
         let rms = (squares.sum::<f64>() / curve.len() as f64).sqrt();
-        let (rho_d, m) = (
-            relative(record.params.rho_d, params.rho_d),
-            relative(record.params.m, params.m),
-        );
-        [excess, rho_d, m, rms]
+        let of = |name: &str| relative(found.get(name).unwrap_or(0.0), material.get(name).unwrap_or(0.0));
+        [excess, of("rho_d"), of("m"), rms]
     }
 }
 

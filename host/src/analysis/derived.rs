@@ -1,13 +1,14 @@
 //! What a fit determines at each angle of incidence, also where the parameters themselves are not determined.
 
-use std::f64::consts::{FRAC_PI_2, LN_2, PI};
+use std::f64::consts::{FRAC_PI_2, LN_2};
 
-use brdfit_core::brdf::{ALL, Brdf, Params, fresnel};
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::brdf::fresnel;
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::reflectance::reflectance;
 use crate::engine::uncertainty::Uncertainty;
+use crate::engine::{Material, Values};
 
 /// The peak of a lobe is searched up to this far from the normal, radians (89.9 degrees).
 const HORIZON: f64 = 0.9989 * FRAC_PI_2;
@@ -48,17 +49,17 @@ pub struct Derived {
 }
 
 /// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
-pub fn at_each_angle(samples: &[Sample<f64>], params: &Params<f64>, known: &Uncertainty) -> Vec<Derived> {
+pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Vec<Derived> {
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
-    angles.into_iter().map(|theta_i| at(theta_i, params, known)).collect()
+    angles.into_iter().map(|theta_i| at(theta_i, material, known)).collect()
 }
 
 /// At one angle of incidence, radians.
-pub fn at(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Derived {
-    let value = |(value, mut gradient): (f64, [f64; 6])| {
-        for (slope, parameter) in gradient.iter_mut().zip(params.to_array()) {
+pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
+    let value = |(value, mut gradient): (f64, Values)| {
+        for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
             // What a parameter of its own size does not change does not depend on it, however unknown that is.
             if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
                 *slope = 0.0;
@@ -67,38 +68,43 @@ pub fn at(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Derived {
         let stderr = known.stderr_of(&gradient);
         Value { value, stderr }
     };
-    let (f, d_n, d_kappa) = fresnel(Real::sin_cos(theta_i).1, params.n, params.kappa);
-    let product = |index: usize| {
-        let rho = params.to_array()[index];
-        let mut gradient = [0.0, 0.0, 0.0, 0.0, rho * d_n, rho * d_kappa];
-        gradient[index] = f;
-        (rho * f > 0.0).then(|| value((rho * f, gradient)))
+    let product = |rho: &str| {
+        let place = |name: &str| material.model.place(name);
+        let (rho, n, kappa) = (place(rho)?, place("n")?, place("kappa"));
+        let at = |place: usize| material.values[place];
+        let (f, d_n, d_kappa) = fresnel(Real::sin_cos(theta_i).1, at(n), kappa.map_or(0.0, at));
+        let mut gradient = Values::from_fn(material.values.len(), |_| 0.0);
+        gradient[n] = at(rho) * d_n;
+        if let Some(kappa) = kappa {
+            gradient[kappa] = at(rho) * d_kappa;
+        }
+        gradient[rho] = f;
+        (at(rho) * f > 0.0).then(|| value((at(rho) * f, gradient)))
     };
-    let rho_s_f = product(1);
+    let rho_s_f = product("rho_s");
     Derived {
         theta_i,
         rho_s_f,
-        rho_v_f: product(2),
-        peak: rho_s_f.and_then(|_| peak(theta_i, params, known)),
-        reflectance: value(reflectance(params, theta_i)),
+        rho_v_f: product("rho_v"),
+        peak: rho_s_f.and_then(|_| peak(theta_i, material, known)),
+        reflectance: value(reflectance(material, theta_i)),
     }
 }
 
-fn peak(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Option<Peak> {
-    let lobe = Brdf::<f64, ALL>::new(&Params {
-        rho_d: 0.0,
-        rho_v: 0.0,
-        ..*params
-    });
-    let geometry = |theta_s: f64| Geometry::new(theta_i, theta_s, PI).ok();
-    let ln_f = |theta_s: f64| geometry(theta_s).map_or(f64::NEG_INFINITY, |geometry| lobe.ln_f(&geometry));
+fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> {
+    // The other terms are no part of the lobe.
+    const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
+    let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));
+    let sample = |theta_s: f64| Sample::in_plane(theta_i, theta_s, 1.0);
+    let ln_f = |theta_s: f64| lobe.ln_f(&sample(theta_s)).unwrap_or(f64::NEG_INFINITY);
     let gradient = |theta_s: f64| {
-        let mut gradient = lobe.gradient(&geometry(theta_s)?).1;
-        // The other terms are no part of the lobe.
-        (gradient[0], gradient[2]) = (0.0, 0.0);
+        let mut gradient = lobe.gradient(&sample(theta_s))?.1;
+        for place in OTHERS.iter().filter_map(|name| material.model.place(name)) {
+            gradient[place] = 0.0;
+        }
         Some(gradient)
     };
-    let top = brightest(&ln_f, theta_i, params.m);
+    let top = brightest(&ln_f, theta_i, material.get("m").unwrap_or(0.1));
     let (at_top, ln_top) = (gradient(top)?, ln_f(top));
     let f = Real::exp(ln_top);
     let half = |end: f64| {
@@ -106,11 +112,11 @@ fn peak(theta_i: f64, params: &Params<f64>, known: &Uncertainty) -> Option<Peak>
         let step = 1e-4 * (theta_s - top);
         let slope = (ln_f(theta_s + step) - ln_f(theta_s - step)) / (2.0 * step);
         let here = gradient(theta_s)?;
-        Some((theta_s, std::array::from_fn(|k| (at_top[k] - here[k]) / slope)))
+        Some((theta_s, Values::from_fn(here.len(), |k| (at_top[k] - here[k]) / slope)))
     };
     let width = half(HORIZON).zip(half(-HORIZON));
-    let width = width.map(|((right, d_right), (left, d_left)): ((_, [f64; 6]), (_, [f64; 6]))| {
-        let gradient = std::array::from_fn(|k| d_right[k] - d_left[k]);
+    let width = width.map(|((right, d_right), (left, d_left))| {
+        let gradient = Values::from_fn(d_right.len(), |k| d_right[k] - d_left[k]);
         Value {
             value: right - left,
             stderr: known.stderr_of(&gradient),

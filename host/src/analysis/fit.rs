@@ -2,12 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 
 use super::choose::{self, Choice};
 use super::derived::{self, Derived};
-use crate::engine::{self, FitOptions, Outcome};
+use crate::engine::{FitOptions, Material, Outcome};
 use crate::error::Error;
 use crate::input::{self, LeftOut, Measurement, ReadAs, left_out};
 
@@ -58,8 +57,8 @@ impl FittedScan {
             scan: measurement.name.clone(),
             read_as: measurement.read_as,
             left_out,
-            angles: by_angle(&samples, &outcome.params),
-            derived: derived::at_each_angle(&samples, &outcome.params, &outcome.uncertainty),
+            angles: by_angle(&samples, &outcome.material()),
+            derived: derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty),
             options: *options,
             chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,
@@ -104,14 +103,13 @@ fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample
     (samples, left_out)
 }
 
-fn by_angle(samples: &[Sample<f64>], params: &Params<f64>) -> Vec<AngleOfIncidence> {
+fn by_angle(samples: &[Sample<f64>], material: &Material) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
     let groups = order.chunk_by(|a, b| a.theta_i == b.theta_i);
     let one = |group: &[&Sample<f64>]| {
         let squares = group.iter().filter_map(|sample| {
-            let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-            let residual = sample.weight * (engine::ln_f(params, &geometry) - brdfit_core::real::Real::ln(sample.brdf));
+            let residual = material.residual(sample)?;
             Some(residual * residual)
         });
         AngleOfIncidence {

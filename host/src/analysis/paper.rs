@@ -165,12 +165,12 @@ fn draw(csv: &str, noise_seed: u32, paper: &FitOptions) -> Draw {
 
 /// Parameter `index` of [`NAMES`] over the distinct minima.
 fn range(outcome: &Outcome, index: usize) -> Range {
-    let value = |minimum: &Minimum| minimum.params.to_array()[index];
+    let value = |minimum: &Minimum| minimum.params[index];
     let values = outcome.minima.iter().map(value);
     Range {
         min: values.clone().fold(f64::INFINITY, f64::min),
         max: values.fold(f64::NEG_INFINITY, f64::max),
-        best: outcome.params.to_array()[index],
+        best: outcome.params[index],
         at_bound: outcome.at_bound.contains(&NAMES[index]),
     }
 }

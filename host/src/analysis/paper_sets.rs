@@ -1,7 +1,8 @@
 //! The paper's three synthetic sets, and what it says of them.
 
-use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
+
+use crate::engine::Material;
 use serde::Serialize;
 
 /// What noise the synthetic sets have.
@@ -100,7 +101,7 @@ pub struct Subject {
     /// Its samples.
     pub samples: Vec<Sample<f64>>,
     /// What it was made with, if that is known.
-    pub truth: Option<Params<f64>>,
+    pub truth: Option<Material>,
 }
 
 /// The paper's three sets, with the first draw of symmetric noise.
@@ -108,7 +109,7 @@ pub fn paper_scans() -> Vec<Subject> {
     let subject = |set: &Source| Subject {
         name: set.name.to_string(),
         samples: samples(set.files(Noise::Sym)[0]),
-        truth: Some(Params::from_array(set.actual)),
+        truth: Some(Material::paper(set.actual)),
     };
     SETS.iter().map(subject).collect()
 }

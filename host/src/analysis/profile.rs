@@ -1,6 +1,5 @@
 //! Profile likelihood: the cost over one parameter, minimised over the others, and the intervals that follow.
 
-use brdfit_core::brdf::NAMES;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
@@ -38,8 +37,10 @@ pub struct Interval {
 /// The profile of one parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Place of the parameter in [`NAMES`].
+    /// Place of the parameter among those of the model.
     pub index: usize,
+    /// Its name.
+    pub name: &'static str,
     /// The least cost of all points.
     pub best: Point,
     /// In order of value.
@@ -60,7 +61,7 @@ impl Profile {
     }
 }
 
-/// Profiles parameter `index` of [`NAMES`] from bound to bound, starting from a fit of these samples with these options; in `f64`.
+/// Profiles parameter `index` of the model from bound to bound, starting from a fit of these samples with these options; in `f64`.
 ///
 /// Each point is the best of fits from its neighbours on both sides, from the minima of the fit, and from a search of its own.
 /// The intervals are those of the F test, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
@@ -76,14 +77,14 @@ pub fn profile(
 ) -> Result<Profile, FitError> {
     let degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
     let limits = LEVELS.map(|level| threshold(level, degrees_of_freedom.max(1)));
-    let held = Held::new(samples, options, outcome, index)?;
-    let (lower, upper) = (options.lower.to_array()[index], options.upper.to_array()[index]);
-    let at = outcome.params.to_array()[index];
+    let held = Held::new(samples, options, outcome, index);
+    let (lower, upper) = (options.lower[index], options.upper[index]);
+    let at = outcome.params[index];
     // What rounding to f32 has left is made up here.
     let (cost, params) =
-        engine::descend(&held.blocks, options, &[outcome.params])?.unwrap_or((outcome.cost, outcome.params));
+        engine::descend(samples, options, &[outcome.params])?.unwrap_or((outcome.cost, outcome.params));
     let best = Point {
-        value: params.to_array()[index],
+        value: params[index],
         cost,
         params,
     };
@@ -109,6 +110,7 @@ pub fn profile(
     points.dedup_by(|b, a| a.value == b.value);
     let mut profile = Profile {
         index,
+        name: options.model.parameters[index].name,
         best: *points.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(&best),
         points,
         degrees_of_freedom,
@@ -148,7 +150,7 @@ pub fn profile(
 /// A first step that is short against the standard error, if there is one, and the value itself.
 fn first_step(outcome: &Outcome, index: usize, range: f64) -> f64 {
     let error = outcome.uncertainty.stderr[index];
-    let own = 0.05 * outcome.params.to_array()[index].abs().max(1e-3 * range);
+    let own = 0.05 * outcome.params[index].abs().max(1e-3 * range);
     if error > 0.0 { own.min(0.5 * error) } else { own }
 }
 
@@ -203,9 +205,4 @@ fn crossing(profile: &mut Profile, held: &Held, limit: f64, high: bool) -> Resul
     }
     profile.points.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(Some(inside.value))
-}
-
-/// The name of the profiled parameter.
-pub fn name(profile: &Profile) -> &'static str {
-    NAMES[profile.index]
 }

@@ -6,14 +6,15 @@ mod cases;
 pub mod condition;
 pub mod exact;
 
-use brdfit_core::brdf::ALL;
-
+use crate::engine::FitOptions;
 use assess::{Assessment, assess};
 
 /// The assessment of every built-in case.
 pub fn built_in() -> Vec<Assessment> {
     let cases = cases::all();
-    let each = cases.iter().map(|case| assess(case.name, &case.samples, ALL));
+    let each = cases
+        .iter()
+        .map(|case| assess(case.name, &case.samples, &FitOptions::default()));
     each.map(|case| case.expect("the built-in cases are valid in both number types"))
         .collect()
 }

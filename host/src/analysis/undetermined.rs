@@ -1,9 +1,9 @@
 //! What is not determined, and through what it still is.
 
-use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::uncertainty::Place;
 
 use super::derived::{Derived, Value};
+use crate::engine::Material;
 use crate::engine::uncertainty::Uncertainty;
 
 /// A parameter whose standard error is a larger part of it than this is not determined.
@@ -24,13 +24,14 @@ pub struct Undetermined {
 ///
 /// A parameter is open if its standard error, with no other parameter held by a bound, is above [`LOOSE`] of itself; for kappa, which may be 0, of 1 at least.
 /// rho_s or rho_v with n or kappa counts as determined through its product with F, if that is known to [`TIGHT`] at some angle of incidence.
-pub fn undetermined(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> Vec<Undetermined> {
-    let values = params.to_array();
+pub fn undetermined(material: &Material, known: &Uncertainty, derived: &[Derived]) -> Vec<Undetermined> {
+    let values = &material.values;
+    let name = |index: usize| material.model.parameters[index].name;
     let open = |index: usize| match known.places[index] {
         None | Some(Place::Fixed) => false,
         Some(Place::Unseen) => true,
         Some(_) => {
-            let size = if NAMES[index] == "kappa" {
+            let size = if name(index) == "kappa" {
                 values[index].max(1.0)
             } else {
                 values[index]
@@ -38,7 +39,7 @@ pub fn undetermined(params: &Params<f64>, known: &Uncertainty, derived: &[Derive
             size > 0.0 && known.stderr_lifted[index] > LOOSE * size
         }
     };
-    let mut open: Vec<&'static str> = (0..NAMES.len()).filter(|&k| open(k)).map(|k| NAMES[k]).collect();
+    let mut open: Vec<&'static str> = (0..values.len()).filter(|&k| open(k)).map(name).collect();
     let mut found = Vec::new();
     let index_is_open = open.contains(&"n") || open.contains(&"kappa");
     let tightest = |of: fn(&Derived) -> Option<Value>| {

@@ -2,6 +2,7 @@
 
 mod journal;
 mod list;
+pub(super) mod own;
 #[cfg(feature = "parquet")]
 mod parquet;
 pub(super) mod record;
@@ -11,7 +12,8 @@ pub(super) mod shard;
 mod summary;
 
 use std::io::{self, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
@@ -23,8 +25,9 @@ use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
-use crate::output::replace_with;
+use crate::output;
 use crate::streams::{Ended, Streams};
+use crate::target::{self, Target};
 use journal::Journal;
 use record::{Head, Record};
 use results::Form;
@@ -34,7 +37,7 @@ use summary::Summary;
 /// Fits many scans; keeps what is done when interrupted
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C the scans in work are finished and kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
+    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
 )]
 pub struct Arguments {
     /// Scans, folders of scans, patterns in quotes, or @LIST, a file of names (@- is standard input)
@@ -72,6 +75,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
     let files = list::files(&arguments.scans, out, streams.input)?;
+    let target = match arguments.shard {
+        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
+        None => output::target(Some(out), &files)?,
+    };
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
         options: asked_for(options, arguments),
@@ -88,13 +95,31 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(folder) => folder.path().join("partial"),
         None => record::partial_path(out, shard),
     };
-    let journal = Mutex::new(Journal::open(kept_in, &head, arguments.resume)?);
+    if target::is_one_of(&kept_in, &files) {
+        return Err(Error::new("this is a scan, and here finished fits are to be kept")
+            .in_file(kept_in.display().to_string())
+            .help("give --out another name"));
+    }
+    if let (Some(target), true, Some(_)) = (&target, arguments.resume, arguments.shard) {
+        journal::take_over(target.path(), &kept_in, &head)?;
+    }
+    let journal = Journal::open(kept_in, &head, arguments.resume)?;
+    for line in &journal.damaged {
+        // If standard error is closed, the results are right all the same.
+        let _ = writeln!(
+            streams.errors,
+            "{}:{line}: this is no whole record; the fit that it may have been of is made again",
+            journal.path.display()
+        );
+    }
+    let journal = Mutex::new(journal);
+    let interrupt = interrupt::keeping();
     let job = run::Job {
         files: &files,
         options,
         read: &arguments.read,
         rows: head.rows,
-        interrupt: interrupt::flag(),
+        interrupt,
     };
     let places: Vec<usize> = (0..files.len()).filter(|&index| shard.has(index)).collect();
     let bar = progress(streams.progress, places.len());
@@ -102,25 +127,33 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let done = pool.install(|| run::run(&job, &places, &journal, &|| bar.inc(1)));
     bar.finish_and_clear();
     let (done, mut journal) = (done?, journal.into_inner().unwrap_or_else(PoisonError::into_inner));
+    let kept = match scratch {
+        Some(_) => "with --out FILE they would have been kept".to_string(),
+        None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
+    };
+    let interrupted = || Ended {
+        code: interrupt::EXIT_CODE,
+        why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
+    };
     if done < places.len() {
-        let kept = match scratch {
-            Some(_) => "with --out FILE they would have been kept".to_string(),
-            None => format!("they are kept in {}, and --resume goes on", journal.path.display()),
-        };
-        return Ok(Ended {
-            code: interrupt::EXIT_CODE,
-            why: format!("interrupted: {done} of {} files are done; {kept}\n", places.len()),
-        });
+        return Ok(interrupted());
     }
-    let mut records = places.iter().map(|&index| journal.record(index));
-    let ended = match arguments.shard {
-        Some(shard) => {
+    // Hundreds of thousands of rows take longer to write than an interrupt may wait.
+    let mut records = places.iter().map(|&index| match interrupt.load(Ordering::Relaxed) {
+        true => Err(Error::new("interrupted")),
+        false => journal.record(index),
+    });
+    let ended = match (arguments.shard, &target) {
+        (Some(_), Some(target)) => {
             let mut summary = Summary::default();
-            let path = record::shard_path(out, shard);
-            replace_with(&path, |file| part(&head, &mut summary.of(&mut records), file))?;
-            summary.tell(true, streams)
+            let written = target.write_with(|file| part(&head, &mut summary.of(&mut records), file));
+            written.map(|()| summary.tell(true, streams))
         }
-        None => deliver(form, &head.columns, &mut records, out, streams)?,
+        _ => deliver(form, &head.columns, &mut records, target.as_ref(), streams),
+    };
+    let ended = match ended {
+        Err(_) if interrupt.load(Ordering::Relaxed) => return Ok(interrupted()),
+        ended => ended?,
     };
     journal.remove();
     Ok(ended)
@@ -129,39 +162,26 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 /// Writes the results of a whole batch, and tells how it went; the result says how it went.
 ///
 /// # Errors
-/// A record is broken, or the output can not be written.
+/// A record is broken, or the output cannot be written.
 pub(super) fn deliver(
     form: Form,
     columns: &[String],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
-    out: &Path,
+    target: Option<&Target>,
     streams: &mut Streams,
 ) -> Result<Ended, Error> {
     let mut summary = Summary::default();
-    let to_stdout = out.as_os_str() == STDIN;
-    if to_stdout {
-        let mut copy = || -> io::Result<()> {
+    if let Some(target) = target {
+        target.write_with(|file| results::write(form, columns, &mut summary.of(records), file))?;
+    } else {
+        output::to_stream(streams.output, |stream| {
             let mut scratch = tempfile::tempfile()?;
             results::write(form, columns, &mut summary.of(records), &mut scratch)?;
             scratch.rewind()?;
-            io::copy(&mut scratch, streams.output)?;
-            streams.output.flush()
-        };
-        match copy() {
-            // A reader that wants no more, such as `head`, is no error.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                return Err(error
-                    .downcast::<Error>()
-                    .unwrap_or_else(|error| Error::new(format!("standard output can not be written: {error}"))));
-            }
-            _ => {}
-        }
-    } else {
-        replace_with(out, |file| {
-            results::write(form, columns, &mut summary.of(records), file)
+            io::copy(&mut scratch, stream).map(drop)
         })?;
     }
-    Ok(summary.tell(!to_stdout, streams))
+    Ok(summary.tell(target.is_some(), streams))
 }
 
 /// Writes the records of a part, in order.

@@ -5,11 +5,16 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use crate::engine::models::{Fitted, MODELS, Model};
-use crate::error::{Error, shown};
+use crate::analysis::choose::{Criteria, criteria};
+use crate::engine::models::MODELS;
+use crate::engine::{self, FitOptions, Model, Outcome};
+use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments, shortest};
+use crate::number::four;
+use crate::output::{self, Format, OutputArguments, deliver};
+use crate::parameters;
 use crate::plot::{self, picture};
+use crate::result::json::ByName;
 use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
@@ -39,40 +44,52 @@ pub struct Arguments {
 /// # Errors
 /// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let models = choose(arguments.models.as_deref())?;
+    let models = models(arguments.models.as_deref())?;
+    let inputs = std::slice::from_ref(&arguments.scan);
+    let (target, plot) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let fits = compare(&models, &measurement, arguments.seed)?;
     let text = match arguments.output.format {
         Format::Text => text(&measurement, &fits),
         Format::Json => json(&measurement, &fits),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &picture(&measurement, &models, &fits))?;
+    if let Some(plot) = &plot {
+        picture::save(plot, &picture(&measurement, &fits))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }
 
-fn choose(list: Option<&str>) -> Result<Vec<Model>, Error> {
-    let Some(list) = list else {
-        return Ok(MODELS.to_vec());
-    };
-    let each = list.split(',').map(str::trim).map(|name| {
-        MODELS.into_iter().find(|model| model.name == name).ok_or_else(|| {
-            let names = MODELS.map(|model| model.name).join(", ");
-            Error::new(format!("there is no model '{}'", shown(name))).help(format!("the models are {names}"))
-        })
-    });
-    each.collect()
+/// The models of a list, or all.
+pub fn models(list: Option<&str>) -> Result<Vec<&'static Model>, Error> {
+    match list {
+        None => Ok(MODELS.iter().collect()),
+        Some(list) => list.split(',').map(parameters::model).collect(),
+    }
+}
+
+/// A model's fit.
+struct Fitted {
+    outcome: Outcome,
+    criteria: Criteria,
 }
 
 /// Fits each model, on all threads.
-fn compare(models: &[Model], measurement: &Measurement, seed: u64) -> Result<Vec<Fitted>, Error> {
+fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Fitted>, Error> {
     use rayon::prelude::*;
+    let samples = &measurement.samples;
     let fits: Vec<_> = models
         .par_iter()
-        .map(|model| model.fit(&measurement.samples, seed))
+        .map(|model| {
+            let options = FitOptions {
+                seed,
+                ..FitOptions::of(model)
+            };
+            let outcome = engine::fit(samples, &options)?;
+            let criteria = criteria(samples, &options, outcome.cost);
+            Ok(Fitted { outcome, criteria })
+        })
         .collect();
     let each = fits.into_iter();
     each.map(|fit| fit.map_err(|error| input::explain(measurement, error)))
@@ -80,29 +97,27 @@ fn compare(models: &[Model], measurement: &Measurement, seed: u64) -> Result<Vec
 }
 
 fn least_aicc(fits: &[Fitted]) -> f64 {
-    fits.iter().map(Fitted::aicc).fold(f64::INFINITY, f64::min)
+    fits.iter().map(|fit| fit.criteria.aicc).fold(f64::INFINITY, f64::min)
 }
 
 fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     let least = least_aicc(fits);
     let mut lines = vec![
         format!("{}: {} samples", measurement.label(), measurement.samples.len()),
-        "  model                P        MSE^2  rms ln    AICc  minima  parameters".to_string(),
+        "  model                   P        MSE^2  rms ln    AICc  minima  parameters".to_string(),
     ];
-    for fit in fits {
-        let values = fit.parameters.iter();
-        let values: Vec<_> = values
-            .map(|(name, value)| format!("{name} {}", short(*value)))
-            .collect();
-        let mark = if fit.aicc() == least { '*' } else { ' ' };
+    for Fitted { outcome, criteria } in fits {
+        let values = outcome.model.named(&outcome.params);
+        let values: Vec<_> = values.map(|(name, value)| format!("{name} {}", four(value))).collect();
+        let mark = if criteria.aicc == least { '*' } else { ' ' };
         lines.push(format!(
-            "{mark} {:<19} {:>2} {:>12.4e} {:>7.4} {:>7.1} {:>7}  {}",
-            fit.model,
-            fit.parameters.len(),
-            fit.mse2(),
-            fit.rms_ln(),
-            fit.aicc() - least,
-            fit.minima,
+            "{mark} {:<22} {:>2} {:>12.4e} {:>7.4} {:>7.1} {:>7}  {}",
+            outcome.model.name,
+            criteria.parameters,
+            outcome.mse2,
+            outcome.rms_ln,
+            criteria.aicc - least,
+            outcome.minima.len(),
             values.join(", "),
         ));
     }
@@ -110,46 +125,33 @@ fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Four digits.
-fn short(value: f64) -> String {
-    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
-    shortest(rounded)
-}
-
 fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
     let models: Vec<_> = fits
         .iter()
-        .map(|fit| {
+        .map(|Fitted { outcome, criteria }| {
             json!({
-                "model": fit.model,
-                "mse2": fit.mse2(),
-                "rms_ln": fit.rms_ln(),
-                "aicc": fit.aicc(),
-                "minima": fit.minima,
-                "parameters": fit.parameters.iter().map(|&(name, value)| (name.to_string(), value.into())).collect::<serde_json::Map<String, serde_json::Value>>(),
+                "model": outcome.model.name,
+                "mse2": outcome.mse2,
+                "rms_ln": outcome.rms_ln,
+                "aicc": criteria.aicc,
+                "bic": criteria.bic,
+                "minima": outcome.minima.len(),
+                "parameters": ByName::new(outcome.model, |place| outcome.params[place]),
             })
         })
         .collect();
     let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
-    format!("{value:#}\n")
+    output::json(&value)
 }
 
-fn picture(measurement: &Measurement, models: &[Model], fits: &[Fitted]) -> String {
-    let values: Vec<Vec<f64>> = fits
-        .iter()
-        .map(|fit| fit.parameters.iter().map(|p| p.1).collect())
-        .collect();
-    let mut best_first: Vec<usize> = (0..fits.len()).collect();
-    best_first.sort_by(|&a, &b| fits[a].cost.total_cmp(&fits[b].cost));
+fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
+    let mut best_first: Vec<&Outcome> = fits.iter().map(|fit| &fit.outcome).collect();
+    best_first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let lines: Vec<_> = best_first
         .into_iter()
-        .map(|k| {
-            let (model, values) = (models[k], &values[k]);
-            let label = format!("{}, rms {:.3}", model.name, fits[k].rms_ln());
-            plot::Overlay {
-                label,
-                ln_f: Box::new(move |sample| model.ln_f(values, sample)),
-            }
+        .map(|outcome| plot::Overlay {
+            label: format!("{}, rms {:.3}", outcome.model.name, outcome.rms_ln),
+            ln_f: plot::of(&outcome.material()),
         })
         .collect();
     plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)

@@ -10,10 +10,12 @@ use indicatif::ProgressBar;
 
 use crate::analysis::converge::{METHODS, study};
 use crate::analysis::paper_sets::{Subject, paper_scans};
+use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::all_parameters;
-use crate::output::{OutputArguments, TableFormat};
+use crate::output::{OutputArguments, TableFormat, deliver};
+use crate::parameters::model;
 use crate::plot::{self, picture};
 use crate::streams::Streams;
 use crate::terms::terms;
@@ -30,12 +32,15 @@ pub struct Arguments {
     /// Takes the paper's three synthetic sets, which are built in
     #[arg(long)]
     paper: bool,
-    /// All six parameters that the scan was made with: adds the errors of rho_d, m and the curve
+    /// All parameters that the scan was made with: adds the errors of rho_d, m and the curve
     #[arg(long, value_name = "NAME=X,...", conflicts_with = "paper")]
     truth: Option<String>,
     /// Number of searches by each method, with seeds from 0
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
+    /// The model, one of those that brdfit compare shows
+    #[arg(long, value_name = "NAME", default_value = "beckmann", conflicts_with = "paper")]
+    model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing
     #[arg(long, value_name = "LIST", default_value = "all")]
     terms: String,
@@ -53,9 +58,16 @@ pub struct Arguments {
 /// # Errors
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let terms = terms(&arguments.terms)?;
+    let model = model(&arguments.model)?;
+    let options = FitOptions {
+        terms: terms(&arguments.terms)?,
+        ..FitOptions::of(model)
+    };
     let truth = arguments.truth.as_deref();
-    let truth = truth.map(|list| all_parameters(list, "--truth")).transpose()?;
+    let truth = truth.map(|list| all_parameters(model, list, "--truth")).transpose()?;
+    let (target, picture) = arguments
+        .output
+        .targets(arguments.plot.as_deref(), arguments.scan.as_slice())?;
     let measurement = match &arguments.scan {
         Some(path) => Some(input::read_one(path, &arguments.read, streams.input)?),
         None => None,
@@ -71,7 +83,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let bar = progress(streams.progress, scans.len(), arguments.seeds);
     let mut studies = Vec::new();
     for Subject { name, samples, truth } in &scans {
-        let study = study(name, samples, truth.as_ref(), terms, arguments.seeds, || bar.inc(1));
+        let study = study(name, samples, truth.as_ref(), &options, arguments.seeds, || bar.inc(1));
         let study = study.map_err(|error| match &measurement {
             Some(measurement) => input::explain(measurement, error),
             None => Error::new(error.to_string()).in_file(name),
@@ -87,10 +99,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Json => write::json(&studies, arguments.seeds),
         TableFormat::Csv => write::csv(&studies),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &plot::converge_svg(&studies, arguments.seeds))?;
+    if let Some(picture) = &picture {
+        picture::save(picture, &plot::converge_svg(&studies, arguments.seeds))?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
 }

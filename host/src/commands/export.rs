@@ -9,7 +9,8 @@ use crate::export::model::Model;
 use crate::export::{bird, constants, glsl, mitsuba, native, zemax};
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
-use crate::output::deliver;
+use crate::output::{deliver, target};
+use crate::parameters;
 use crate::streams::Streams;
 
 /// Writes a fitted model for other programs
@@ -25,9 +26,17 @@ pub struct Arguments {
         conflicts_with = "params"
     )]
     result: Option<PathBuf>,
-    /// All six parameters, in place of a result
+    /// All parameters of the model, in place of a result
     #[arg(long, value_name = "NAME=X,...")]
     params: Option<String>,
+    /// The model of --params, one of those that brdfit compare shows
+    #[arg(
+        long = "model",
+        value_name = "NAME",
+        default_value = "beckmann",
+        conflicts_with = "result"
+    )]
+    model: String,
     /// Which result, if there are several; the first is 1
     #[arg(long, value_name = "N", requires = "result")]
     index: Option<usize>,
@@ -65,6 +74,7 @@ enum Form {
 /// # Errors
 /// There is no such result, or its parameters have no BRDF.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = target(arguments.output.as_deref(), arguments.result.as_slice())?;
     let mut model = match (&arguments.result, &arguments.params) {
         (Some(path), _) => {
             let bytes = if path.as_os_str() == STDIN {
@@ -75,23 +85,26 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             let fail = |error: Error| error.in_file(path.display().to_string());
             Model::of_json(&bytes, arguments.index).map_err(fail)?
         }
-        (None, params) => Model::of_params(all_parameters(params.as_deref().unwrap_or_default(), "--params")?),
+        (None, params) => {
+            let of = parameters::model(&arguments.model)?;
+            Model::of_params(all_parameters(of, params.as_deref().unwrap_or_default(), "--params")?)
+        }
     };
     if let Some(name) = &arguments.name {
         model.name.clone_from(name);
     }
     let text = match arguments.to {
         Form::Zemax => zemax::write(&model),
-        Form::Glsl => glsl::write(&model),
-        Form::Mitsuba => mitsuba::write(&model),
+        Form::Glsl => glsl::write(&model)?,
+        Form::Mitsuba => mitsuba::write(&model)?,
         Form::MitsubaNative => {
-            let (text, deviation) = native::write(&model);
+            let (text, deviation) = native::write(&model)?;
             let _ = writeln!(streams.errors, "{deviation}");
             text
         }
-        Form::C => constants::c(&model),
-        Form::Rust => constants::rust(&model),
+        Form::C => constants::c(&model)?,
+        Form::Rust => constants::rust(&model)?,
         Form::Bird => bird::write(&model),
     };
-    deliver(text.as_bytes(), arguments.output.as_deref(), streams.output)
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }

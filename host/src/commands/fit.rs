@@ -1,6 +1,7 @@
 //! `brdfit fit`: files in, reports out.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::Args;
@@ -8,14 +9,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::{FitOptions, Method};
+use crate::engine::{FitOptions, Material, Method};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
+use crate::interrupt;
 use crate::options::SearchArguments;
-use crate::output::{OutputArguments, TableFormat};
+use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::plot::{self, picture};
 use crate::result;
-use crate::streams::Streams;
+use crate::streams::{Ended, Streams};
 
 /// Fits the model to scans
 #[derive(Args, Debug)]
@@ -40,44 +42,71 @@ pub struct Arguments {
     read: ReadOptions,
 }
 
-/// Runs the subcommand; nothing is written before every scan is read and fitted.
+/// Runs the subcommand; nothing is written before every scan is read and fitted, or an interrupt leaves those that are.
 ///
 /// # Errors
 /// The first thing that is wrong with options, files or the fit.
-pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let options = arguments.search.fit_options()?;
+    let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), &arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if arguments.plot.is_some() && measurements.len() > 1 {
         return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
     }
     let pool = arguments.search.pool()?;
     let bar = progress(streams.progress, &options, measurements.len());
-    let results: Vec<Result<FittedScan, Error>> = pool.install(|| {
+    // Of one scan nothing is finished before all is.
+    let several = measurements.len() > 1;
+    let interrupted = || several && interrupt::keeping().load(Ordering::Relaxed);
+    let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {
+            if interrupted() {
+                return None;
+            }
             let report = fit(measurement, &options);
             bar.inc(1);
-            report
+            Some(report)
         })
         .collect()
     });
     bar.finish_and_clear();
-    let reports: Vec<FittedScan> = results.into_iter().collect::<Result<_, _>>()?;
+    let reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    let missing = measurements.len() - reports.len();
+    let ended = match missing {
+        0 => Ended::default(),
+        _ => Ended {
+            code: interrupt::EXIT_CODE,
+            why: format!(
+                "interrupted: {} of {} scans are fitted and written\n",
+                reports.len(),
+                measurements.len()
+            ),
+        },
+    };
+    if reports.is_empty() {
+        return Ok(ended);
+    }
     let text = match arguments.output.format {
         TableFormat::Text => result::text(&reports, arguments.minima),
         TableFormat::Json => result::json(&reports),
         TableFormat::Csv => result::csv(&reports, arguments.minima),
     };
-    if let (Some(path), [measurement], [report]) = (&arguments.plot, &measurements[..], &reports[..]) {
-        let curves: Vec<_> = report.outcome.minima.iter().map(|minimum| minimum.params).collect();
+    if let (Some(picture), [measurement], [report]) = (&picture, &measurements[..], &reports[..]) {
+        let material = |values| Material {
+            values,
+            ..report.outcome.material()
+        };
+        let minima = report.outcome.minima.iter();
+        let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
-            path,
+            picture,
             &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
         )?;
     }
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
-    Ok(())
+    Ok(ended)
 }
 
 /// A bar over the scans if there are several, a clock if one takes long.

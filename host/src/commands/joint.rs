@@ -2,15 +2,18 @@
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::NAMES;
 use brdfit_core::geometry::Sample;
 use brdfit_engine::joint::{Fitted, SCANS, fit};
 use clap::Args;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use crate::error::{Error, shown};
+use crate::engine::{FitOptions, Model};
+use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments, shortest};
+use crate::options::SearchArguments;
+use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::parameters::parameter;
+use crate::result::json::ByName;
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -23,9 +26,8 @@ pub struct Arguments {
     /// The parameters that are the same in all scans, with commas between
     #[arg(long, value_name = "LIST", default_value = "m")]
     share: String,
-    /// Seed of the starts
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
+    #[command(flatten)]
+    search: SearchArguments,
     #[command(flatten)]
     output: OutputArguments,
     #[command(flatten)]
@@ -37,7 +39,9 @@ pub struct Arguments {
 /// # Errors
 /// An unknown parameter, too few or too many scans, a scan that can not be read or fitted, or an output that can not be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let shared = shared(&arguments.share)?;
+    let options = arguments.search.fit_options()?;
+    let shared = shared(options.model, &arguments.share)?;
+    let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
@@ -46,35 +50,34 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         );
     }
     let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
-    let fitted =
-        fit(&samples, shared, arguments.seed).map_err(|(place, error)| input::explain(&measurements[place], error))?;
+    let pool = arguments.search.pool()?;
+    let fitted = pool
+        .install(|| fit(&samples, &shared, &options))
+        .map_err(|(place, error)| input::explain(&measurements[place], error))?;
     let text = match arguments.output.format {
-        Format::Text => text(&measurements, &fitted),
-        Format::Json => json(&measurements, &fitted),
+        Format::Text => text(&options, &measurements, &fitted),
+        Format::Json => json(&options, &measurements, &fitted),
     };
-    arguments.output.deliver(&text, streams.output)?;
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
     Ok(())
 }
 
-fn shared(list: &str) -> Result<[bool; 6], Error> {
-    let mut shared = [false; 6];
-    for name in list.split(',').map(str::trim) {
-        let known = NAMES.iter().position(|known| *known == name);
-        let index = known.ok_or_else(|| {
-            Error::new(format!("there is no parameter '{}'", shown(name)))
-                .help(format!("--share takes some of {}", NAMES.join(",")))
-        })?;
-        shared[index] = true;
+fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
+    let mut shared = vec![false; model.parameters.len()];
+    for name in list.split(',') {
+        shared[parameter(model, name)?] = true;
     }
     Ok(shared)
 }
 
-fn text(measurements: &[Measurement], fitted: &Fitted) -> String {
-    let names: Vec<&str> = (0..6).filter(|&k| fitted.shared[k]).map(|k| NAMES[k]).collect();
-    let value = |(value, error): (f64, Option<f64>)| match error {
-        Some(error) => format!("{} ± {}", digits(value, 4), digits(error, 2)),
-        None => digits(value, 4),
+fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> String {
+    let name = |k: usize| options.model.parameters[k].name;
+    let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
+    let names: Vec<&str> = present(true).map(name).collect();
+    let value = |scan: usize, k: usize| match fitted.errors[scan][k] {
+        Some(error) => format!("{} ± {}", digits(fitted.scans[scan][k], 4), digits(error, 2)),
+        None => digits(fitted.scans[scan][k], 4),
     };
     let mut lines = vec![format!(
         "{} scans, {} samples, {} parameters; shared: {}",
@@ -83,12 +86,13 @@ fn text(measurements: &[Measurement], fitted: &Fitted) -> String {
         fitted.parameters,
         names.join(", ")
     )];
-    for k in (0..6).filter(|&k| fitted.shared[k]) {
-        lines.push(format!("  {:<6} {}", NAMES[k], value(fitted.scans[0][k])));
+    for k in present(true) {
+        lines.push(format!("  {:<6} {}", name(k), value(0, k)));
     }
-    for (measurement, parameters) in measurements.iter().zip(&fitted.scans) {
-        let own = (0..6).filter(|&k| !fitted.shared[k]);
-        let own: Vec<_> = own.map(|k| format!("{} {}", NAMES[k], value(parameters[k]))).collect();
+    for (scan, measurement) in measurements.iter().enumerate() {
+        let own: Vec<_> = present(false)
+            .map(|k| format!("{} {}", name(k), value(scan, k)))
+            .collect();
         lines.push(format!("  {}: {}", measurement.label(), own.join(", ")));
     }
     let rms = |cost: f64| (cost / fitted.samples as f64).sqrt();
@@ -106,32 +110,30 @@ fn digits(value: f64, digits: usize) -> String {
     shortest(rounded)
 }
 
-fn json(measurements: &[Measurement], fitted: &Fitted) -> String {
-    let shared: Vec<&str> = (0..6).filter(|&k| fitted.shared[k]).map(|k| NAMES[k]).collect();
+fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> String {
+    let model = options.model;
+    let shared: Vec<&str> = (0..fitted.shared.len())
+        .filter(|&k| fitted.shared[k])
+        .map(|k| model.parameters[k].name)
+        .collect();
     let scans: Vec<Value> = measurements
         .iter()
-        .zip(&fitted.scans)
-        .map(|(measurement, parameters)| {
-            let of = |part: fn(&(f64, Option<f64>)) -> Value| -> Map<String, Value> {
-                NAMES
-                    .iter()
-                    .map(|name| name.to_string())
-                    .zip(parameters.iter().map(part))
-                    .collect()
-            };
+        .enumerate()
+        .map(|(scan, measurement)| {
             json!({
                 "scan": measurement.label(),
-                "parameters": of(|p| p.0.into()),
-                "stderr": of(|p| p.1.into()),
+                "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
+                "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
             })
         })
         .collect();
     let value = json!({
+        "model": model.name,
         "shared": shared,
         "samples": fitted.samples,
         "cost": fitted.cost,
         "cost_separate": fitted.separate,
         "scans": scans,
     });
-    format!("{value:#}\n")
+    output::json(&value)
 }

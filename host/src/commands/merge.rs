@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::batch::own;
 use super::batch::record::{self, Head, Record};
 use super::batch::results::Form;
 use super::batch::shard::Shard;
 use crate::error::Error;
+use crate::output;
 use crate::streams::{Ended, Streams};
 
 /// Makes one result of the parts of a batch
@@ -41,6 +43,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     } else {
         arguments.parts.clone()
     };
+    let target = output::target(Some(out), &paths)?;
     let mut parts = paths
         .into_iter()
         .map(Part::open)
@@ -59,7 +62,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         }
         parts.iter_mut().find_map(|part| part.end().err()).map(Err)
     });
-    super::batch::deliver(form, &head.columns, &mut records, out, streams)
+    super::batch::deliver(form, &head.columns, &mut records, target.as_ref(), streams)
 }
 
 /// The parts that lie beside the result.
@@ -78,15 +81,17 @@ fn beside(out: &Path) -> Result<Vec<PathBuf>, Error> {
             .file_name()
             .map(|name| name.to_string_lossy().into_owned())
             .unwrap_or_default();
-        let number = |text: &str| text.parse::<u32>().is_ok();
-        let place = name
-            .strip_prefix(&base)
-            .and_then(|rest| rest.strip_prefix('.'))
-            .and_then(|rest| rest.split_once("-of-"));
-        place.is_some_and(|(i, n)| number(i) && number(n))
+        name.strip_prefix(&base).is_some_and(own::is_part)
     };
-    let entries = folder.read_dir().map_err(|_| none())?;
-    let mut parts: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_part).collect();
+    let unlisted = |error: std::io::Error| {
+        Error::new(format!("cannot be listed: {error}"))
+            .in_file(folder.display().to_string())
+            .help("name the parts, or the --out that the batch had")
+    };
+    let entries = folder.read_dir().map_err(unlisted)?;
+    let paths = entries.map(|entry| Ok(entry.map_err(unlisted)?.path()));
+    let mut parts = paths.collect::<Result<Vec<PathBuf>, Error>>()?;
+    parts.retain(is_part);
     parts.sort();
     if parts.is_empty() { Err(none()) } else { Ok(parts) }
 }
@@ -141,14 +146,10 @@ impl Part {
                 .in_file(path.display().to_string())
                 .help("give the parts that brdfit batch --shard wrote")
         };
-        let file = File::open(&path).map_err(|error| fail(format!("can not be read: {error}")))?;
-        let mut lines = BufReader::new(file);
-        let mut line = Vec::new();
-        let head = lines
-            .read_until(b'\n', &mut line)
-            .ok()
-            .and_then(|_| serde_json::from_slice(&line).ok());
-        let head = head.ok_or_else(|| fail("this is no part of a batch".into()))?;
+        let read = |error: std::io::Error| fail(format!("cannot be read: {error}"));
+        let mut lines = BufReader::new(File::open(&path).map_err(read)?);
+        let head = record::head(&mut lines).map_err(read)?;
+        let (head, _) = head.ok_or_else(|| fail("this is no part of a batch".into()))?;
         Ok(Part { path, head, lines })
     }
 
@@ -156,7 +157,7 @@ impl Part {
     fn record(&mut self, index: usize) -> Result<Record, Error> {
         let mut line = Vec::new();
         let read = self.lines.read_until(b'\n', &mut line);
-        read.map_err(|error| self.error(&format!("can not be read: {error}")))?;
+        read.map_err(|error| self.error(&format!("cannot be read: {error}")))?;
         let again = |error: Error| error.help(format!("run --shard {} again", self.head.shard));
         let cut = || {
             again(self.error(&format!(
@@ -167,8 +168,13 @@ impl Part {
         if !line.ends_with(b"\n") {
             return Err(cut());
         }
-        let record: Record = serde_json::from_slice(&line)
-            .map_err(|_| again(self.error(&format!("the record of file {} is broken", index + 1))))?;
+        let record: Record = record::of_line(&line).ok_or_else(|| {
+            self.error(&format!("the record of file {} is broken", index + 1))
+                .help(format!(
+                    "run --shard {} again with --resume, which fits only what is broken",
+                    self.head.shard
+                ))
+        })?;
         if record.index == index {
             return Ok(record);
         }

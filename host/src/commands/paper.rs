@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use crate::analysis::paper::study;
 use crate::analysis::paper_sets::Noise;
 use crate::error::Error;
-use crate::output::{Format, deliver};
+use crate::output::{Format, deliver, target};
 use crate::streams::Streams;
+use crate::target::NO_INPUTS;
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum NoiseName {
@@ -41,7 +42,8 @@ pub struct Arguments {
 /// # Errors
 /// The stream breaks.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    deliver(&write(arguments), None, streams.output)
+    let target = target(None, &NO_INPUTS)?;
+    deliver(&write(arguments), target.as_ref(), streams.output)
 }
 
 /// The study as text or JSON.

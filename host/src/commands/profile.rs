@@ -6,7 +6,6 @@ mod text;
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::{NAMES, has};
 use clap::Args;
 use rayon::prelude::*;
 
@@ -17,7 +16,7 @@ use crate::engine::{FitError, FitOptions, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver};
 use crate::plot::{self, picture};
 use crate::streams::Streams;
 use crate::terms::term_names;
@@ -56,6 +55,8 @@ pub struct Arguments {
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
+    let inputs = std::slice::from_ref(&arguments.scan);
+    let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let pool = arguments.search.pool()?;
     let samples = &measurement.samples;
@@ -99,30 +100,29 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Text => text::write(&findings),
         Format::Json => json::write(&findings),
     };
-    if let Some(path) = &arguments.plot {
-        picture::save(path, &plot::profile_svg(&findings.name, &findings.profiles))?;
+    if let Some(picture) = &picture {
+        picture::save(picture, &plot::profile_svg(&findings.name, &findings.profiles))?;
     }
-    arguments.output.deliver(&written, streams.output)?;
+    deliver(written.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
 }
 
 /// The places of the parameters asked for.
 fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Error> {
-    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
-    let free = |index: usize| has(options.terms, index) && lower[index] < upper[index];
-    let all: Vec<usize> = (0..NAMES.len()).filter(|&index| free(index)).collect();
-    let known = || all.iter().map(|&index| NAMES[index]).collect::<Vec<_>>().join(", ");
+    let name = |index: usize| options.model.parameters[index].name;
+    let all: Vec<usize> = options.free().collect();
+    let known = || all.iter().map(|&index| name(index)).collect::<Vec<_>>().join(", ");
     if names.is_empty() {
         return Ok(all);
     }
-    let one = |name: &String| {
-        let index = all.iter().copied().find(|&index| NAMES[index] == name.trim());
+    let one = |asked: &String| {
+        let index = all.iter().copied().find(|&index| name(index) == asked.trim());
         index.ok_or_else(|| {
             let terms = term_names(options.terms).join(",");
             Error::new(format!(
                 "'{}' is no free parameter of the terms {terms}",
-                crate::error::shown(name)
+                crate::error::shown(asked)
             ))
             .help(format!("the free parameters are {}", known()))
         })

@@ -6,19 +6,20 @@ use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use brdfit_core::brdf::Params;
 use clap::Args;
 use rayon::prelude::*;
 
+use crate::engine::Material;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
-use crate::output::deliver;
+use crate::output;
 use crate::page::provenance::{self, Source};
 use crate::page::section::Section;
 use crate::page::{html, results};
 use crate::plot::picture;
 use crate::streams::Streams;
+use crate::target::{NO_INPUTS, Target};
 
 /// Writes a page with figures, tables and provenance of the fits of scans, as one HTML file
 #[derive(Args, Debug)]
@@ -47,7 +48,7 @@ struct Subject {
     measurement: Measurement,
     source: Source,
     /// What its results say.
-    stored: Option<Params<f64>>,
+    stored: Option<Material>,
 }
 
 /// Runs the subcommand; `given` are all arguments of the program, which the page shows.
@@ -56,12 +57,21 @@ struct Subject {
 /// The first thing that is wrong with options, files or a fit.
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
+    // Results name further files, which are inputs too.
+    let target = |inputs: &[PathBuf]| output::target(arguments.output.as_deref(), inputs);
+    target(&arguments.scans)?;
     let mut subjects = Vec::new();
     for (name, bytes) in input::read_bytes(&arguments.scans, streams.input)? {
         match results::parse(&bytes) {
             None => subjects.extend(scans(&name, &bytes, &arguments.read)?),
             Some(fitted) => subjects.extend(of_results(&name, fitted, arguments, streams)?),
         }
+    }
+    let named = subjects.iter().map(|subject| PathBuf::from(&subject.measurement.file));
+    let inputs: Vec<PathBuf> = arguments.scans.iter().cloned().chain(named).collect();
+    let target = target(&inputs)?;
+    if let Some(folder) = &arguments.plot {
+        make(folder)?;
     }
     let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| {
         let each = subjects.par_iter();
@@ -73,7 +83,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
              }| {
                 let section = Section::new(measurement, source, &options)?;
                 if let Some(stored) = stored {
-                    results::agree(&section.label, &section.report.outcome.params, stored)?;
+                    results::agree(&section.label, &section.report.outcome.material(), stored)?;
                 }
                 Ok(section)
             },
@@ -82,10 +92,10 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     });
     let sections: Vec<Section> = sections.into_iter().collect::<Result<_, _>>()?;
     if let Some(folder) = &arguments.plot {
-        draw(folder, &sections)?;
+        draw(folder, &sections, &inputs)?;
     }
     let page = html::page(&sections, &provenance::command(given));
-    deliver(page.as_bytes(), arguments.output.as_deref(), streams.output)?;
+    output::deliver(page.as_bytes(), target.as_ref(), streams.output)?;
     for subject in &subjects {
         left_out::note(std::slice::from_ref(&subject.measurement), streams.errors);
     }
@@ -113,8 +123,8 @@ fn of_results(
     let mut files: HashMap<PathBuf, Vec<Subject>> = HashMap::new();
     let mut found = Vec::new();
     for one in fitted {
-        let stored = match one.params {
-            Ok(params) => params,
+        let stored = match one.material {
+            Ok(material) => material,
             Err(why) => {
                 // If standard error is closed, the page still says what it is of.
                 let _ = writeln!(streams.errors, "{name}: left out, as it has no fit: {why}");
@@ -126,6 +136,12 @@ fn of_results(
         let all = match files.entry(one.file) {
             Entry::Occupied(read) => read.into_mut(),
             Entry::Vacant(place) => {
+                // What a file of results says is no word of the user's, and a pipe would be waited for.
+                if place.key().metadata().is_ok_and(|there| !there.is_file()) {
+                    return Err(Error::new("this is no file")
+                        .in_file(file)
+                        .help(format!("{name} names it; give the results of scans in files")));
+                }
                 let bytes = input::read_bytes(std::slice::from_ref(place.key()), &mut std::io::empty());
                 let help = || format!("{name} names it; call report where the fit was made");
                 let bytes = bytes.map_err(|error| error.help(help()))?;
@@ -150,15 +166,20 @@ fn of_results(
     Ok(found)
 }
 
-/// Writes every figure in both forms: `1-curves.svg`, `1-curves.png` and so on, the number being that of the scan.
-fn draw(folder: &Path, sections: &[Section]) -> Result<(), Error> {
-    let fail = |error| Error::new(format!("can not be made: {error}")).in_file(folder.display().to_string());
+/// Makes a folder for figures, which must take files.
+fn make(folder: &Path) -> Result<(), Error> {
+    let fail = |error| Error::new(format!("cannot be made: {error}")).in_file(folder.display().to_string());
     fs::create_dir_all(folder).map_err(fail)?;
+    Target::new(&folder.join("1-curves.svg"), &NO_INPUTS).map(drop)
+}
+
+/// Writes every figure in both forms: `1-curves.svg`, `1-curves.png` and so on, the number being that of the scan.
+fn draw(folder: &Path, sections: &[Section], inputs: &[PathBuf]) -> Result<(), Error> {
     for (place, section) in sections.iter().enumerate() {
         for figure in &section.figures {
             for ending in ["svg", "png"] {
                 let name = format!("{}-{}.{ending}", place + 1, figure.name);
-                picture::save(&folder.join(name), &figure.svg)?;
+                picture::save(&Target::new(&folder.join(name), inputs)?, &figure.svg)?;
             }
         }
     }

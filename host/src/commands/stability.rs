@@ -8,9 +8,11 @@ use clap::Args;
 
 use crate::analysis::stability::assess::assess;
 use crate::analysis::stability::built_in;
+use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments};
+use crate::output::{Format, OutputArguments, deliver, json};
+use crate::parameters::model;
 use crate::streams::Streams;
 use crate::terms::terms;
 
@@ -21,6 +23,9 @@ pub struct Arguments {
     /// A scan, as `brdfit fit` reads it; - is standard input [default: the built-in cases]
     #[arg(value_name = "SCAN")]
     scan: Option<PathBuf>,
+    /// The model, one of those that brdfit compare shows
+    #[arg(long, value_name = "NAME", default_value = "beckmann", requires = "scan")]
+    model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing
     #[arg(long, value_name = "LIST", default_value = "all", requires = "scan")]
     terms: String,
@@ -35,6 +40,7 @@ pub struct Arguments {
 /// # Errors
 /// The scan can not be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {
         None => {
             let cases = built_in();
@@ -45,8 +51,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         }
         Some(path) => {
             let measurement = input::read_one(path, &arguments.read, streams.input)?;
-            let terms = terms(&arguments.terms)?;
-            let case = assess(&measurement.label(), &measurement.samples, terms)
+            let options = FitOptions {
+                terms: terms(&arguments.terms)?,
+                ..FitOptions::of(model(&arguments.model)?)
+            };
+            let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;
             left_out::note(&[measurement], streams.errors);
             match arguments.output.format {
@@ -55,10 +64,5 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             }
         }
     };
-    arguments.output.deliver(&text, streams.output)
-}
-
-fn json(value: &impl serde::Serialize) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
+    deliver(text.as_bytes(), target.as_ref(), streams.output)
 }

@@ -2,28 +2,23 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use brdfit_core::brdf::NAMES;
 use brdfit_core::real::Real;
 use serde_json::{Value, json};
 
 use super::model::{Model, word};
+use crate::output;
 
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
 const PAPER: &str = "https://doi.org/10.1117/1.OE.60.9.094103";
-const MEANINGS: [&str; 6] = [
-    "diffuse reflectance",
-    "weight of the surface lobe",
-    "weight of the volume lobe",
-    "slope of the facets",
-    "index of refraction n - i kappa, real part",
-    "index of refraction n - i kappa, imaginary part",
-];
 
 /// The file.
 pub fn write(model: &Model) -> String {
     let parameter = |place: usize| {
-        let mut object = json!({ "name": NAMES[place], "description": MEANINGS[place], "value": model.params.to_array()[place], "unit": "" });
+        let mut object = {
+            let parameter = &model.material.model.parameters[place];
+            json!({ "name": parameter.name, "description": parameter.what, "value": model.material.values[place], "unit": parameter.unit })
+        };
         if let Some(stderr) = model.stderr[place] {
             object["uncertainty"] = stderr.into();
             object["uncertainty_unit"] = "".into();
@@ -31,7 +26,7 @@ pub fn write(model: &Model) -> String {
         }
         object
     };
-    let parameters: Vec<Value> = (0..NAMES.len()).map(parameter).collect();
+    let parameters: Vec<Value> = (0..model.material.values.len()).map(parameter).collect();
     let mut rows = Vec::new();
     for theta_i in (0..=80).step_by(10) {
         for theta_s in -85..=85 {
@@ -73,8 +68,7 @@ pub fn write(model: &Model) -> String {
             "BRDF": column("sr^-1", 3),
         },
     });
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(&file).unwrap_or_default() + "\n"
+    output::json(&file)
 }
 
 /// Now, in UTC as ISO 8601.

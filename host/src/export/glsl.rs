@@ -4,6 +4,7 @@ use brdfit_core::brdf::NAMES;
 
 use super::model::Model;
 use crate::engine::FitOptions;
+use crate::error::Error;
 use crate::output::shortest;
 
 /// Eq. 14 in vectors; the tangential parts give the half angles without cancellation.
@@ -47,11 +48,11 @@ vec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y)
 ";
 
 /// The file.
-pub fn write(model: &Model) -> String {
-    let bounds = FitOptions::default();
-    let (lower, upper) = (bounds.lower.to_array(), bounds.upper.to_array());
+pub fn write(model: &Model) -> Result<String, Error> {
+    let params = model.eq_14("--to glsl")?;
+    let FitOptions { lower, upper, .. } = FitOptions::default();
     let mut text = format!("analytic\n\n# {}\n\n::begin parameters\n", model.origin);
-    for (place, value) in model.params.to_array().into_iter().enumerate() {
+    for (place, value) in params.to_array().into_iter().enumerate() {
         let (least, largest) = (lower[place].min(value), upper[place].max(value));
         text += &format!(
             "float {} {} {} {}\n",
@@ -61,5 +62,5 @@ pub fn write(model: &Model) -> String {
             shortest(value)
         );
     }
-    text + "::end parameters\n\n::begin shader\n\n" + SHADER + "\n::end shader\n"
+    Ok(text + "::end parameters\n\n::begin shader\n\n" + SHADER + "\n::end shader\n")
 }

@@ -3,6 +3,7 @@
 use brdfit_core::brdf::NAMES;
 
 use super::model::{Model, word};
+use crate::error::Error;
 
 /// The class; a lobe is sampled by its facets, and the lobes that are there equally often.
 const CLASS: &str = r#"
@@ -103,7 +104,8 @@ mi.register_bsdf(NAME, Brdfit)
 "#;
 
 /// The module.
-pub fn write(model: &Model) -> String {
+pub fn write(model: &Model) -> Result<String, Error> {
+    let params = model.eq_14("--to mitsuba")?;
     let name = word(&model.name);
     let mut text = format!(
         "# {}.\n# Modified Cook-Torrance model of Bishop, Butler and Marciniak (2021), Eq. 14, exact.\n",
@@ -113,8 +115,8 @@ pub fn write(model: &Model) -> String {
         "# Choose a variant, such as mi.set_variant(\"llvm_ad_rgb\"), import this, and use {{\"type\": \"{name}\"}}.\n"
     );
     text += &format!("import drjit as dr\nimport mitsuba as mi\n\nNAME = \"{name}\"\nPARAMETERS = {{\n");
-    for (parameter, value) in NAMES.into_iter().zip(model.params.to_array()) {
+    for (parameter, value) in NAMES.into_iter().zip(params.to_array()) {
         text += &format!("    \"{parameter}\": {value:?},\n");
     }
-    text + "}\n" + CLASS
+    Ok(text + "}\n" + CLASS)
 }

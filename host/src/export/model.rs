@@ -2,35 +2,37 @@
 
 use std::path::Path;
 
-use brdfit_core::brdf::{NAMES, Params};
-use brdfit_core::geometry::Geometry;
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::Sample;
+use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 use serde_json::Value;
 
-use crate::engine::ln_f;
+use crate::engine::{self, Material};
 use crate::error::Error;
-use crate::parameters::check;
+use crate::parameters::{check, model};
+use crate::plain::plain;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     /// What it is called: the scan's file, by default.
     pub name: String,
-    /// Its parameters.
-    pub params: Params<f64>,
+    /// Its BRDF.
+    pub material: Material,
     /// Their standard errors, as far as they are known.
-    pub stderr: [Option<f64>; 6],
+    pub stderr: Vec<Option<f64>>,
     /// Where it comes from, in one line.
     pub origin: String,
 }
 
 impl Model {
     /// From parameters alone.
-    pub fn of_params(params: Params<f64>) -> Model {
+    pub fn of_params(material: Material) -> Model {
         Model {
             name: "material".into(),
-            params,
-            stderr: [None; 6],
+            material,
+            stderr: vec![None; material.values.len()],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
         }
     }
@@ -64,13 +66,17 @@ impl Model {
                     .help("count from 1")
                 })?,
         };
-        let mut values = [0.0; NAMES.len()];
-        for (place, name) in NAMES.into_iter().enumerate() {
-            let value = result["parameters"][name].as_f64();
-            values[place] = value.ok_or_else(|| none(&format!("there is no parameters.{name}")))?;
-        }
-        for (place, &value) in values.iter().enumerate() {
-            check(place, value)?;
+        // Results of version 0.1 name no model.
+        let model = match result["model"].as_str() {
+            Some(name) => model(name)?,
+            None => engine::Model::paper(),
+        };
+        let mut values = Vec::new();
+        for (place, parameter) in model.parameters.iter().enumerate() {
+            let value = result["parameters"][parameter.name].as_f64();
+            let value = value.ok_or_else(|| none(&format!("there is no parameters.{}", parameter.name)))?;
+            check(model, place, value)?;
+            values.push(value);
         }
         let text = |key: &str| result[key].as_str();
         let file = text("file").unwrap_or("material");
@@ -79,22 +85,53 @@ impl Model {
         if let Some(rms) = result["rms_ln"].as_f64() {
             origin += &format!(", rms of ln f {rms:.3}");
         }
-        let stderr = NAMES.map(|name| result["uncertainty"]["stderr"][name].as_f64());
+        let stderr = |parameter: &Parameter| result["uncertainty"]["stderr"][parameter.name].as_f64();
         Ok(Model {
             name,
-            params: Params::from_array(values),
-            stderr,
-            origin: origin.replace(['\n', '\r'], " "),
+            material: Material {
+                model,
+                values: values.into_iter().collect(),
+            },
+            stderr: model.parameters.iter().map(stderr).collect(),
+            origin: plain(&origin).into_owned(),
         })
     }
 
     /// f in sr^-1; angles in radians, 0 beyond the horizon.
     pub fn f(&self, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
-        Geometry::new(theta_i, theta_s, delta_phi).map_or(0.0, |geometry| Real::exp(ln_f(&self.params, &geometry)))
+        let sample = Sample {
+            theta_i,
+            theta_s,
+            delta_phi,
+            brdf: 1.0,
+            weight: 1.0,
+        };
+        self.material.ln_f(&sample).map_or(0.0, Real::exp)
+    }
+
+    /// The parameters of Eq. 14, for forms that know no other model.
+    ///
+    /// # Errors
+    /// It is another model.
+    pub fn eq_14(&self, form: &str) -> Result<Params<f64>, Error> {
+        self.material.eq_14().ok_or_else(|| {
+            Error::new(format!("{form} can not hold the model {}", self.material.model.name))
+                .help("--to zemax and --to bird take any model; or fit --model beckmann")
+        })
     }
 }
 
-/// The model's name as a word of a program: letters, digits and underscores.
+/// Words that mean something else to Python, C, C++ or Rust, or are models of Mitsuba's own.
+const RESERVED: &str = "abstract alignas alignof and as asm assert async auto await become bitand bitor blendbsdf bool box break bumpmap \
+    case catch char class compl concept conductor const consteval constexpr constinit continue crate decltype def default del delete \
+    dielectric diffuse do double dr dyn elif else enum except explicit export extern false final finally float fn for friend from \
+    gen global goto hair hide if impl import in inline int is lambda let loop long macro mask match measured mi mod move mut mutable \
+    namespace new noexcept none nonlocal normalmap not null nullptr operator or override pass plastic pplastic principled \
+    principledthin private protected pub raise ref register requires restrict retarder return roughconductor roughdielectric \
+    roughplastic self short signed sizeof static struct super switch template thindielectric this throw trait true try twosided \
+    type typedef typeid typename typeof union unsafe unsigned unsized use using virtual void volatile where while with xor yield";
+
+/// The model's name as a word of a program: letters, digits and underscores, and no word of a language.
 pub(super) fn word(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()
@@ -109,9 +146,32 @@ pub(super) fn word(name: &str) -> String {
             }
         })
         .collect();
-    if word.starts_with(|c: char| c.is_ascii_alphabetic()) {
+    let reserved = RESERVED.split_whitespace().any(|reserved| reserved == word);
+    if word.starts_with(|c: char| c.is_ascii_alphabetic()) && !reserved {
         word
     } else {
         format!("brdf_{word}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_identifiers() {
+        for (name, expected) in [
+            ("scans/Black Paint-2.csv", "black_paint_2"),
+            ("class", "brdf_class"),
+            ("mi.csv", "brdf_mi"),
+            ("diffuse", "brdf_diffuse"),
+            ("a\0b\u{202e}c", "a_b_c"),
+            ("2024", "brdf_2024"),
+            ("_x", "brdf__x"),
+            ("", "brdf_"),
+            ("\"\nimport os\n", "brdf___import_os_"),
+        ] {
+            assert_eq!(word(name), expected, "{name:?}");
+        }
     }
 }

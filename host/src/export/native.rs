@@ -1,10 +1,11 @@
 //! Mitsuba 3: the nearest of its own models, a `roughconductor` and a `diffuse`, and how far it is off.
 
-use brdfit_core::brdf::fresnel;
+use brdfit_core::brdf::{Params, fresnel};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
 
 use super::model::{Model, word};
+use crate::error::Error;
 
 /// Pairs of directions that are compared, up to 85 degrees from the normal.
 const DIRECTIONS: u32 = 1000;
@@ -15,8 +16,8 @@ const DARK: f64 = 1e-9;
 /// The dictionary as a Python module, and the largest deviations as a sentence.
 ///
 /// Beckmann's facets and Fresnel are the same; masking is Smith's in place of Blinn's, and there is no volume lobe.
-pub fn write(model: &Model) -> (String, String) {
-    let p = &model.params;
+pub fn write(model: &Model) -> Result<(String, String), Error> {
+    let p = &model.eq_14("--to mitsuba-native")?;
     let uniform = |value: f64| format!("{{\"type\": \"uniform\", \"value\": {value:?}}}");
     let conductor = |rho_s: f64, indent: &str| {
         format!(
@@ -37,7 +38,7 @@ pub fn write(model: &Model) -> (String, String) {
             conductor(2.0 * p.rho_s, "    ")
         )
     };
-    let (least, largest) = deviation(model);
+    let (least, largest) = deviation(model, p);
     let deviation = format!(
         "against the exact model {:+.1} to {:+.1} % at {DIRECTIONS} pairs of directions up to 85 deg",
         100.0 * least,
@@ -49,12 +50,11 @@ pub fn write(model: &Model) -> (String, String) {
         word(&model.name),
         word(&model.name)
     );
-    (text, deviation)
+    Ok((text, deviation))
 }
 
 /// The nearest model in sr^-1, angles in radians.
-pub fn f(model: &Model, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
-    let p = &model.params;
+pub fn f(p: &Params<f64>, theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
     let Ok(geometry) = Geometry::new(theta_i, theta_s, delta_phi) else {
         return 0.0;
     };
@@ -79,11 +79,11 @@ fn smith(cos: f64, m: f64) -> f64 {
 }
 
 /// The least and the largest of f_nearest / f - 1: a third of the directions near the specular one, a third near the retro one, the others all over the hemisphere.
-fn deviation(model: &Model) -> (f64, f64) {
+fn deviation(model: &Model, p: &Params<f64>) -> (f64, f64) {
     const LARGEST: f64 = 85.0;
     // Two irrational steps, which never fall into a grid.
     let part = |k: u32, step: f64| (f64::from(k) * step).fract();
-    let width = 3.0 * libm::atan(model.params.m).to_degrees();
+    let width = 3.0 * libm::atan(p.m).to_degrees();
     let mut range = (0.0f64, 0.0f64);
     for k in 0..DIRECTIONS {
         let theta_i = LARGEST * f64::from(k) / f64::from(DIRECTIONS - 1);
@@ -98,7 +98,7 @@ fn deviation(model: &Model) -> (f64, f64) {
         let exact = model.f(at.0, at.1, at.2);
         // Where no instrument sees anything, ratios tell nothing.
         if exact > DARK {
-            let off = f(model, at.0, at.1, at.2) / exact - 1.0;
+            let off = f(p, at.0, at.1, at.2) / exact - 1.0;
             range = (range.0.min(off), range.1.max(off));
         }
     }

@@ -16,7 +16,7 @@ const AZIMUTH_STEP: usize = 5;
 /// The file: degrees, sr^-1; 0 is below the horizon.
 pub fn write(model: &Model) -> String {
     let azimuths: Vec<f64> = (0..=180).step_by(AZIMUTH_STEP).map(|degrees| degrees as f64).collect();
-    let radials = radials(model.params.m);
+    let radials = radials(model.material.get("m").unwrap_or(0.1));
     let mut text = format!("# {}\n", model.origin);
     text += "Source  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\nScatterType  BRDF\n";
     for (keyword, angles) in [
@@ -34,7 +34,7 @@ pub fn write(model: &Model) -> String {
     text += "\nMonochrome\nDataBegin\n";
     for theta_i in INCIDENCES {
         // The format has no place for a model that makes energy.
-        let tis = reflectance(&model.params, theta_i.to_radians()).0.min(1.0);
+        let tis = reflectance(&model.material, theta_i.to_radians()).0.min(1.0);
         text += &format!("TIS  {tis:.6}\n");
         for &azimuth in &azimuths {
             let value = |&radial: &f64| format!("{:.9e}", at(model, theta_i, azimuth, radial));

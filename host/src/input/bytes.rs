@@ -12,20 +12,35 @@ use crate::error::Error;
 /// The name that stands for standard input.
 pub const STDIN: &str = "-";
 
-/// Reads the bytes of a file.
+/// Reads the bytes of a file or a pipe.
 ///
 /// # Errors
-/// It is missing, a directory, or not readable.
+/// It is missing, a directory, a device, or not readable.
 pub fn of_file(path: &Path) -> Result<Vec<u8>, Error> {
     let fail = |what: String| Error::new(what).in_file(path.display().to_string());
     // On some systems a directory opens like a file, and only reading it fails.
     if path.is_dir() {
         return Err(fail("this is a directory".into()).help("name the files in it"));
     }
+    if is_device(path) {
+        return Err(fail("this is a device, which may have no end".into()).help("give a file, or - for standard input"));
+    }
     fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => fail("no such file".into()).help("check the name and the folder"),
         _ => fail(format!("can not be read: {error}")).help("check its permissions"),
     })
+}
+
+#[cfg(unix)]
+fn is_device(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    let there = path.metadata().map(|there| there.file_type());
+    there.is_ok_and(|there| there.is_char_device() || there.is_block_device())
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &Path) -> bool {
+    false
 }
 
 /// Reads all of standard input.

@@ -5,7 +5,7 @@ use brdfit_core::real::Real;
 
 use super::Measurement;
 use super::format::Format;
-use super::left_out::{Counts, Reason};
+use super::left_out::Reason;
 use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
 use super::units::{Angles, Forward, Quantity};
@@ -25,12 +25,12 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         weighted: false,
     };
     let (mut samples, mut lines) = (Vec::new(), Vec::new());
-    let (mut counts, mut faults) = (Counts::default(), Faults::default());
-    let mut weights = weight::Sum::default();
+    let (mut counts, mut faults) = (scan.left_out, Faults::default());
+    let mut weights = weight::Count::default();
     for row in &scan.rows {
         match sample(row, &scan.places, &read_as, options).map_err(|error| at_line(error, row.line))? {
             Seen::Valid(sample, kind) => {
-                weights.add(sample.weight, kind);
+                weights.add(kind);
                 samples.push(sample);
                 lines.push(row.line);
             }
@@ -141,6 +141,9 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
     sample.weight = here.fold(weight, |weight, (_, factor)| weight * factor);
     if sample.weight == 0.0 {
         return Ok(Seen::Masked(Reason::NoWeight));
+    }
+    if !sample.weight.is_finite() {
+        return invalid(places.weight, "the weight is too large to compute with".into());
     }
     Ok(Seen::Valid(sample, source))
 }

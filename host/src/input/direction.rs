@@ -13,6 +13,34 @@ pub fn angles([x, y, z]: [f64; 3]) -> (f64, Option<f64>) {
     (theta_s, Some(180.0 - atan2(y, x).to_degrees()))
 }
 
+/// Scattering angle and azimuth from incidence, degrees, of the direction at `radial` from the specular ray, which is at `specular` from the normal.
+///
+/// Azimuth 0 leads from the specular ray to the normal, 180 away from it.
+pub fn of_specular(specular: f64, radial: f64, azimuth: f64) -> (f64, Option<f64>) {
+    let [(sin_i, cos_i), (sin_a, cos_a), (sin_r, cos_r)] = [specular, azimuth, radial].map(sin_cos);
+    angles([
+        sin_i * cos_r - cos_i * sin_r * cos_a,
+        sin_r * sin_a,
+        cos_i * cos_r + sin_i * sin_r * cos_a,
+    ])
+}
+
+/// Angle of incidence, scattering angle and azimuth from incidence, degrees, of a half vector at `theta_h` from the normal and incidence at `theta_d`, `phi_d` around it (Rusinkiewicz 1998).
+///
+/// At `phi_d` 0 incidence leans further from the normal than the half vector.
+pub fn of_half_angles(theta_h: f64, theta_d: f64, phi_d: f64) -> (f64, f64, f64) {
+    let [(sin_h, cos_h), (sin_d, cos_d), (sin_p, cos_p)] = [theta_h, theta_d, phi_d].map(sin_cos);
+    // Incidence is on one side of the half vector, scattering opposite to it; the half vector leans by theta_h.
+    let lean = |side: f64| {
+        let (x, y) = (side * sin_d * cos_p, side * sin_d * sin_p);
+        let (x, z) = (cos_h * x + sin_h * cos_d, cos_h * cos_d - sin_h * x);
+        let theta = atan2(sqrt(x * x + y * y), z).to_degrees();
+        (theta, atan2(y, x).to_degrees())
+    };
+    let ((theta_i, phi_i), (theta_s, phi_s)) = (lean(1.0), lean(-1.0));
+    (theta_i, theta_s, phi_s - phi_i)
+}
+
 /// Sine and cosine of an angle in degrees; exact at multiples of 90, so that what is in plane stays there.
 pub fn sin_cos(degrees: f64) -> (f64, f64) {
     match degrees.rem_euclid(360.0) {

@@ -3,10 +3,23 @@
 mod astm;
 mod bird;
 mod fred;
+mod lighttools;
 mod lumos;
 mod matrix;
 mod merl;
+mod openmaterial;
+mod pabopto;
+mod rgl;
+mod speos;
+mod ssdd;
+mod xlsx;
 mod zemax;
+
+mod foreign;
+mod grid;
+mod tensor;
+mod warp;
+mod words;
 
 use super::format::{Format, Reader};
 use super::options::ReadOptions;
@@ -15,13 +28,20 @@ use super::{bytes, table};
 use crate::error::Error;
 
 /// All formats in the order in which they are tried; a table is what is left, and comes last.
-pub static ALL: [Format; 8] = [
+pub static ALL: [Format; 15] = [
     merl::FORMAT,
+    rgl::FORMAT,
+    ssdd::FORMAT,
+    xlsx::FORMAT,
+    speos::FORMAT,
+    openmaterial::FORMAT,
     bird::FORMAT,
     astm::FORMAT,
     fred::FORMAT,
     lumos::FORMAT,
+    pabopto::FORMAT,
     zemax::FORMAT,
+    lighttools::FORMAT,
     matrix::FORMAT,
     table::FORMAT,
 ];
@@ -49,13 +69,28 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Er
             return Ok((format, read(file, options)?));
         }
     }
-    let text = bytes::text(file)?;
+    let text = bytes::text(file).map_err(|error| foreign::named(file).unwrap_or(error))?;
+    of_text(&text, asked, options)
+}
+
+/// The scans in a text, of the format that is asked for or that it looks like.
+fn of_text(text: &str, asked: Option<Format>, options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
     for format in ALL {
-        if let Reader::Text { is, read } = format.reader
-            && (asked == Some(format) || asked.is_none() && is(&text))
-        {
-            return Ok((format, read(&text, options)?));
+        let Reader::Text { is, read } = format.reader else {
+            continue;
+        };
+        if asked == Some(format) {
+            return Ok((format, read(text, options)?));
         }
+        if asked.is_some() || !is(text) {
+            continue;
+        }
+        if format == table::FORMAT
+            && let Some(error) = foreign::named(text.as_bytes()).or_else(|| foreign::no_table(text))
+        {
+            return Err(error);
+        }
+        return Ok((format, read(text, options)?));
     }
     Err(Error::new("the format is not known").help("take --input-format"))
 }

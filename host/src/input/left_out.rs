@@ -13,6 +13,14 @@ use super::Measurement;
 pub enum Reason {
     /// It has no valid value or angle.
     NotValid,
+    /// The value is 0 in a file that must fill a grid, and so was not measured.
+    NotMeasured,
+    /// A direction is at the horizon or below it in a file that must fill a grid.
+    Horizon,
+    /// It is of transmission.
+    Transmission,
+    /// It is the reflectance of a mirror, which is no BRDF.
+    Mirror,
     /// It is near the direction of incidence.
     Retro,
     /// An angle is beyond the largest that is wanted.
@@ -30,6 +38,10 @@ impl Reason {
     pub fn title(self) -> &'static str {
         match self {
             Reason::NotValid => "not valid",
+            Reason::NotMeasured => "0, so not measured",
+            Reason::Horizon => "at the horizon or below",
+            Reason::Transmission => "of transmission",
+            Reason::Mirror => "of a mirror's reflectance",
             Reason::Retro => "near retro",
             Reason::MaxAngle => "beyond the largest angle",
             Reason::MaxValue => "saturated",
@@ -51,19 +63,31 @@ pub struct LeftOut {
 }
 
 /// Counts them.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Counts(BTreeMap<(Reason, u64), LeftOut>);
 
 impl Counts {
     /// One more.
     pub fn add(&mut self, reason: Reason, theta_i_deg: f64) {
+        self.add_many(reason, theta_i_deg, 1);
+    }
+
+    /// So many more.
+    pub fn add_many(&mut self, reason: Reason, theta_i_deg: f64, samples: usize) {
         // The bits of numbers that are not negative are in their order.
         let entry = self.0.entry((reason, theta_i_deg.to_bits())).or_insert(LeftOut {
             reason,
             theta_i_deg,
             samples: 0,
         });
-        entry.samples += 1;
+        entry.samples += samples;
+    }
+
+    /// Those of another part of the same scan.
+    pub fn merge(&mut self, others: Counts) {
+        for one in others.list() {
+            self.add_many(one.reason, one.theta_i_deg, one.samples);
+        }
     }
 
     /// In order of reason and angle.

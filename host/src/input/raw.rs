@@ -1,6 +1,7 @@
 //! A scan as a reader gives it: numbers as they stand in the file.
 
 use super::columns::plain;
+use super::left_out::Counts;
 use super::units::{Angles, Quantity};
 use crate::error::{Error, shown};
 
@@ -17,6 +18,22 @@ pub struct RawScan {
     pub places: Places,
     /// Its rows, in order.
     pub rows: Vec<Row>,
+    /// What the reader left out of it.
+    pub left_out: Counts,
+}
+
+impl RawScan {
+    /// A scan without rows, whose values are a BRDF; `names` tells it from others of the file.
+    pub fn new(names: Vec<String>, angles: Angles) -> RawScan {
+        RawScan {
+            names,
+            angles,
+            quantity: Quantity::Brdf,
+            places: Places::default(),
+            rows: Vec::new(),
+            left_out: Counts::default(),
+        }
+    }
 }
 
 /// Columns of a table, counted from 1; none where a file is no table.

@@ -67,8 +67,6 @@ fn scan(columns: &Columns, value: &Value, wavelength: &str) -> RawScan {
     let place = |column: usize| column as u64 + 1;
     let wavelength = (!wavelength.is_empty()).then(|| format!("{wavelength} nm"));
     RawScan {
-        names: value.name.clone().into_iter().chain(wavelength).collect(),
-        angles: columns.angles,
         quantity: value.quantity,
         places: Places {
             theta_i: Some(place(columns.theta_i)),
@@ -77,7 +75,10 @@ fn scan(columns: &Columns, value: &Value, wavelength: &str) -> RawScan {
             value: Some(place(value.column)),
             weight: value.weight.map(|(column, _)| place(column)),
         },
-        rows: Vec::new(),
+        ..RawScan::new(
+            value.name.clone().into_iter().chain(wavelength).collect(),
+            columns.angles,
+        )
     }
 }
 

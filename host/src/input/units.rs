@@ -35,8 +35,8 @@ impl Angles {
     pub fn azimuth(self, angle: f64) -> f64 {
         match self {
             Angles::Deg => azimuth(angle),
-            // Files in radians have about six decimals.
-            Angles::Rad if (angle.abs() - f64::PI).abs() < 1e-6 => f64::PI,
+            // Files in radians have five or six decimals.
+            Angles::Rad if (angle.abs() - f64::PI).abs() < 5e-6 => f64::PI,
             Angles::Rad => azimuth(angle.to_degrees()),
         }
     }
@@ -184,6 +184,7 @@ mod tests {
         assert_eq!(Angles::Deg.azimuth(-180.0), f64::PI);
         assert_eq!(Angles::Rad.azimuth("3.141593".parse().unwrap()), f64::PI);
         assert_eq!(Angles::Rad.azimuth("-3.141593".parse().unwrap()), f64::PI);
+        assert_eq!(Angles::Rad.azimuth("3.14159".parse().unwrap()), f64::PI);
         assert!((Angles::Rad.azimuth(-0.261799) + 0.261799).abs() < 1e-15);
         assert!((Angles::Rad.azimuth(4.0) - (4.0 - 2.0 * f64::PI)).abs() < 1e-15);
     }

@@ -11,18 +11,16 @@ pub enum Source {
     Sigma,
 }
 
-/// The squares of the weights of a scan.
+/// Where the weights of a scan are from.
 #[derive(Debug, Default)]
-pub struct Sum {
-    squares: f64,
+pub struct Count {
     sigmas: usize,
     others: usize,
 }
 
-impl Sum {
+impl Count {
     /// One more sample.
-    pub fn add(&mut self, weight: f64, source: Source) {
-        self.squares += weight * weight;
+    pub fn add(&mut self, source: Source) {
         match source {
             Source::Unit => self.others += 1,
             Source::Sigma => self.sigmas += 1,
@@ -33,10 +31,48 @@ impl Sum {
     ///
     /// Returns the standard deviation of ln f that a weight of 1 stands for, if all weights are of standard deviations.
     pub fn normalise(&self, samples: &mut [Sample<f64>]) -> Option<f64> {
-        let root_mean_square = (self.squares / samples.len() as f64).sqrt();
+        // A power of two changes no digit, and keeps the squares of weights of any size in range.
+        let largest = samples
+            .iter()
+            .fold(0.0f64, |largest, sample| largest.max(sample.weight));
+        let exponent = libm::frexp(largest).1;
+        let mut squares = 0.0;
+        for sample in &mut *samples {
+            sample.weight = libm::ldexp(sample.weight, -exponent);
+            squares += sample.weight * sample.weight;
+        }
+        let root_mean_square = (squares / samples.len() as f64).sqrt();
         for sample in samples {
             sample.weight /= root_mean_square;
         }
-        (self.sigmas > 0 && self.others == 0).then(|| 1.0 / root_mean_square)
+        (self.sigmas > 0 && self.others == 0).then(|| libm::ldexp(1.0 / root_mean_square, -exponent))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_size_of_weights_does_not_matter() {
+        let normalised = |scale: f64| {
+            let mut samples = [0.5, 1.0, 3.0].map(|weight| Sample {
+                weight: weight * scale,
+                ..Sample::in_plane(0.5, 0.5, 1.0)
+            });
+            let mut count = Count::default();
+            count.add(Source::Sigma);
+            let sigma = count.normalise(&mut samples).unwrap();
+            (samples.map(|sample| sample.weight), sigma * scale)
+        };
+        let (weights, sigma) = normalised(1.0);
+        let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
+        assert!((squares / 3.0 - 1.0).abs() < 1e-15);
+        // Powers of two, so that the scaled weights are exact.
+        for exponent in [-1000, -600, -1, 1, 600, 1000] {
+            let (scaled, scaled_sigma) = normalised(libm::ldexp(1.0, exponent));
+            assert_eq!(scaled, weights, "{exponent}");
+            assert_eq!(scaled_sigma, sigma, "{exponent}");
+        }
     }
 }

@@ -1,30 +1,21 @@
 //! The page itself.
 
-use brdfit_core::brdf::{NAMES, has};
 use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::section::Section;
 use crate::analysis::derived::Value;
 use crate::analysis::undetermined::undetermined;
+use crate::engine::Outcome;
 use crate::input::left_out;
 use crate::names;
 use crate::number::{digits, percent, short};
 use crate::output::shortest;
+use crate::plain::plain;
 use crate::result::words::{self, shown};
 use crate::terms::term_names;
 
 const STYLE: &str = include_str!("style.css");
-
-/// What the parameters mean, in their order.
-const MEANINGS: [&str; 6] = [
-    "diffuse reflectance",
-    "weight of the surface lobe",
-    "weight of the volume lobe",
-    "slope of the facets",
-    "index of refraction, real part",
-    "index of refraction, imaginary part",
-];
 
 /// Rows of the table of minima at most.
 const MINIMA: usize = 12;
@@ -49,7 +40,7 @@ pub fn page(sections: &[Section], command: &str) -> String {
             body {
                 header {
                     h1 { (title) }
-                    p { "Modified Cook-Torrance model of Bishop, Butler and Marciniak, Opt. Eng. 60(9), 094103 (2021), fitted to ln BRDF by brdfit " (env!("CARGO_PKG_VERSION")) "." }
+                    p { (models(sections)) ", fitted to ln BRDF by brdfit " (env!("CARGO_PKG_VERSION")) "." }
                 }
                 @if sections.len() > 1 { (overview(sections)) }
                 @for (place, section) in sections.iter().enumerate() { (scan(place, section, sections.len() > 1, command)) }
@@ -66,7 +57,7 @@ fn overview(sections: &[Section]) -> Markup {
             caption { "Best fits." }
             thead { tr {
                 th.text { "scan" } th { "samples" }
-                @for name in NAMES { th { (symbol(name)) } }
+                @for name in names(sections) { th { (symbol(name)) } }
                 th { "rms of ln " i { "f" } }
             } }
             tbody {
@@ -74,8 +65,8 @@ fn overview(sections: &[Section]) -> Markup {
                     @let outcome = &section.report.outcome;
                     td.text { a href={ "#scan" (place + 1) } { (section.label) } }
                     td { (outcome.samples) }
-                    @for (index, value) in outcome.params.to_array().into_iter().enumerate() {
-                        td { @if has(section.report.options.terms, index) { (number(value)) } @else { "–" } }
+                    @for name in names(sections) {
+                        td { @if let Some(value) = fitted(outcome, name) { (number(value)) } @else { "–" } }
                     }
                     td { (percent(outcome.rms_ln)) }
                 } }
@@ -118,7 +109,7 @@ fn summary(section: &Section) -> Markup {
                     " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
                 }
             }
-            @for open in undetermined(&outcome.params, known, &report.derived) {
+            @for open in undetermined(&outcome.material(), known, &report.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
             @if report.derived.iter().any(|at| at.reflectance.value > 1.0) {
@@ -137,22 +128,20 @@ fn summary(section: &Section) -> Markup {
 fn parameters(section: &Section) -> Markup {
     let (options, outcome) = (&section.report.options, &section.report.outcome);
     let known = &outcome.uncertainty;
-    let (lower, upper) = (options.lower.to_array(), options.upper.to_array());
     html! {
         table {
-            caption { "Parameters of the best fit, all dimensionless; ± is one standard error." }
+            caption { "Parameters of the best fit, dimensionless where no unit is given; ± is one standard error." }
             thead { tr { th.text { "parameter" } th.text { "meaning" } th { "value" } th { "±" } th { "bounds" } th.text { "remark" } } }
             tbody {
-                @for (index, value) in outcome.params.to_array().into_iter().enumerate() {
-                    @if has(options.terms, index) {
-                        tr {
-                            td.text { (symbol(NAMES[index])) }
-                            td.text { (MEANINGS[index]) }
-                            td { (number(value)) }
-                            td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (short(known.stderr[index])) } @else { "–" } }
-                            td { (shortest(lower[index])) " – " (shortest(upper[index])) }
-                            td.text { (remark(section, index)) }
-                        }
+                @for index in outcome.present() {
+                    @let parameter = &outcome.model.parameters[index];
+                    tr {
+                        td.text { (symbol(parameter.name)) }
+                        td.text { (parameter.what) @if !parameter.unit.is_empty() { ", " (parameter.unit) } }
+                        td { (number(outcome.params[index])) }
+                        td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (short(known.stderr[index])) } @else { "–" } }
+                        td { (shortest(options.lower[index])) " – " (shortest(options.upper[index])) }
+                        td.text { (remark(section, index)) }
                     }
                 }
             }
@@ -182,8 +171,8 @@ fn remark(section: &Section, index: usize) -> String {
         Some(Place::Fixed) => "fixed".into(),
         Some(Place::Unseen) => "no sample depends on it".into(),
         _ => {
-            let open = undetermined(&outcome.params, known, &section.report.derived);
-            let name = NAMES[index];
+            let open = undetermined(&outcome.material(), known, &section.report.derived);
+            let name = outcome.model.parameters[index].name;
             let not = open.iter().any(|open| open.parameters.contains(&name));
             if not { "not determined".into() } else { String::new() }
         }
@@ -192,18 +181,20 @@ fn remark(section: &Section, index: usize) -> String {
 
 /// Pairs with a correlation of 0.9 and more.
 fn correlated(section: &Section) -> Vec<String> {
-    let known = &section.report.outcome.uncertainty;
-    let pairs = (0..NAMES.len()).flat_map(|i| (i + 1..NAMES.len()).map(move |j| (i, j)));
+    let outcome = &section.report.outcome;
+    let (known, count) = (&outcome.uncertainty, outcome.params.len());
+    let name = |index: usize| outcome.model.parameters[index].name;
+    let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
     pairs
         .map(|(i, j)| (i, j, known.correlation[i][j]))
         .filter(|(.., correlation)| correlation.abs() >= 0.9)
-        .map(|(i, j, correlation)| format!("{} and {} {}", NAMES[i], NAMES[j], minus(&format!("{correlation:.3}"))))
+        .map(|(i, j, correlation)| format!("{} and {} {}", name(i), name(j), minus(&format!("{correlation:.3}"))))
         .collect()
 }
 
 fn minima(section: &Section) -> Markup {
     let minima = &section.survey.minima;
-    let terms = section.report.options.terms;
+    let outcome = &section.report.outcome;
     html! {
         table {
             caption {
@@ -213,15 +204,13 @@ fn minima(section: &Section) -> Markup {
             }
             thead { tr {
                 th { "#" } th { "MSE" sup { "2" } }
-                @for name in NAMES { th { (symbol(name)) } }
+                @for index in outcome.present() { th { (symbol(outcome.model.parameters[index].name)) } }
                 th { "hits" } th { "first start" }
             } }
             tbody {
                 @for (place, minimum) in minima.iter().take(MINIMA).enumerate() { tr {
                     td { (place + 1) } td { (number(minimum.mse2)) }
-                    @for (index, value) in minimum.params.to_array().into_iter().enumerate() {
-                        td { @if has(terms, index) { (number(value)) } @else { "–" } }
-                    }
+                    @for index in outcome.present() { td { (number(minimum.params[index])) } }
                     td { (minimum.hits) } td { (minimum.first_start) }
                 } }
             }
@@ -267,16 +256,53 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (report.file) ", " (section.source.bytes) " bytes" } }
+                tr { th.text { "input" } td.text { (plain(&report.file)) ", " (section.source.bytes) " bytes" } }
                 tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
-                tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } }
+                tr { th.text { "model" } td.text { (report.outcome.model.name) } }
+                @if report.outcome.terms != 0 { tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } } }
                 tr { th.text { "passes" } td.text { (report.outcome.evaluations.linearize) " with derivatives, " (report.outcome.evaluations.cost) " without" } }
             }
         }
     }
+}
+
+/// The models of the fits, as a clause.
+fn models(sections: &[Section]) -> String {
+    let mut models: Vec<_> = sections.iter().map(|section| section.report.outcome.model).collect();
+    models.dedup();
+    match &models[..] {
+        [one] if one.is_paper() => {
+            "Modified Cook-Torrance model of Bishop, Butler and Marciniak, Opt. Eng. 60(9), 094103 (2021)".into()
+        }
+        [one] => format!("Model {} ({}; {})", one.name, one.what, one.source),
+        _ => "Models as each scan needs them".into(),
+    }
+}
+
+/// The names of the parameters of all fits, each once.
+fn names(sections: &[Section]) -> Vec<&'static str> {
+    let models = sections
+        .iter()
+        .flat_map(|section| section.report.outcome.model.parameters);
+    let mut names: Vec<&'static str> = Vec::new();
+    for parameter in models {
+        if !names.contains(&parameter.name) {
+            names.push(parameter.name);
+        }
+    }
+    names
+}
+
+/// The value of a parameter that was fitted.
+fn fitted(outcome: &Outcome, name: &str) -> Option<f64> {
+    let place = outcome.model.place(name)?;
+    outcome
+        .present()
+        .any(|index| index == place)
+        .then(|| outcome.params[place])
 }
 
 /// A name such as rho_s as it is set.

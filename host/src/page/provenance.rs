@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use sha2::{Digest, Sha256};
 
+use crate::plain::plain;
+
 /// The file that a scan came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
@@ -37,6 +39,7 @@ pub fn command(given: &[OsString]) -> String {
     });
     std::iter::once("brdfit".to_string())
         .chain(words)
+        .map(|word| plain(&word).into_owned())
         .collect::<Vec<_>>()
         .join(" ")
 }

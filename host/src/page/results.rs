@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
-use brdfit_core::brdf::{NAMES, Params};
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
+use crate::engine::{Material, Model, Values};
 use crate::error::Error;
-use crate::result::json::JsonParameters;
+use crate::output::shortest;
+use crate::plain::of_cell;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +17,8 @@ pub struct Fitted {
     pub file: PathBuf,
     /// Which scan of the file it is.
     pub scan: Option<String>,
-    /// Its parameters, or why it has none.
-    pub params: Result<Params<f64>, String>,
+    /// Its model with its parameters, or why it has none.
+    pub material: Result<Material, String>,
 }
 
 /// The results in the bytes of a file of JSON or CSV; `None` if it holds something else, such as a scan.
@@ -33,7 +35,9 @@ pub fn parse(bytes: &[u8]) -> Option<Vec<Fitted>> {
 struct Object {
     file: PathBuf,
     scan: Option<String>,
-    parameters: Option<JsonParameters>,
+    /// That of the paper in results of version 0.1.
+    model: Option<String>,
+    parameters: Option<Map<String, Value>>,
     error: Option<String>,
 }
 
@@ -41,14 +45,16 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
     let one = serde_json::from_str::<Object>(text).map(|one| vec![one]);
     let objects = one.or_else(|_| serde_json::from_str::<Vec<Object>>(text)).ok()?;
     let fitted = |object: Object| {
-        let params = match object.parameters {
-            Some(parameters) => Ok(parameters.into()),
+        let material = match object.parameters {
+            Some(parameters) => Ok(material(object.model.as_deref(), |name| {
+                parameters.get(name)?.as_f64()
+            })?),
             None => Err(object.error?),
         };
         Some(Fitted {
             file: object.file,
             scan: object.scan,
-            params,
+            material,
         })
     };
     objects.into_iter().map(fitted).collect()
@@ -59,7 +65,7 @@ fn csv(text: &str) -> Option<Vec<Fitted>> {
     let head = reader.headers().ok()?.clone();
     let place = |name: &str| head.iter().position(|column| column == name);
     let (file, scan) = (place("file")?, place("scan")?);
-    let places: Vec<usize> = NAMES.iter().map(|name| place(name)).collect::<Option<_>>()?;
+    place("rho_d").or(place("A"))?;
     // With --minima a scan has a row for each of them, best first.
     let minimum = place("minimum");
     let mut all = Vec::new();
@@ -68,34 +74,55 @@ fn csv(text: &str) -> Option<Vec<Fitted>> {
         if minimum.is_some_and(|place| row.get(place) != Some("1")) {
             continue;
         }
-        let number = |&place: &usize| row.get(place)?.parse().ok();
-        let values: Option<Vec<f64>> = places.iter().map(number).collect();
-        let params = match values.and_then(|values| <[f64; 6]>::try_from(values).ok()) {
-            Some(values) => Ok(Params::from_array(values)),
-            None => Err(row.get(place("error")?)?.to_string()),
+        let cell = |name: &str| row.get(place(name)?);
+        let material = match material(cell("model"), |name| cell(name)?.parse().ok()) {
+            Some(material) => Ok(material),
+            None => Err(cell("error")?.to_string()),
         };
         all.push(Fitted {
-            file: row.get(file)?.into(),
-            scan: Some(row.get(scan)?.to_string()).filter(|scan| !scan.is_empty()),
-            params,
+            file: of_cell(row.get(file)?).into(),
+            scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
+            material,
         });
     }
     Some(all)
 }
 
-/// Refuses a fit with other parameters than these results have.
+/// The model of this name, or that of the paper, with the values that `number` gives its parameters.
+fn material(model: Option<&str>, number: impl Fn(&str) -> Option<f64>) -> Option<Material> {
+    let model = match model {
+        Some(name) => Model::find(name)?,
+        None => Model::paper(),
+    };
+    let values = model.parameters.iter().map(|parameter| number(parameter.name));
+    let values: Option<Values> = values.collect::<Option<Vec<f64>>>().map(Values::from_iter);
+    Some(Material { model, values: values? })
+}
+
+/// Refuses a fit with another model or other parameters than these results have.
 ///
 /// # Errors
 /// The first parameter that differs in any bit, with both values.
-pub fn agree(label: &str, found: &Params<f64>, stored: &Params<f64>) -> Result<(), Error> {
-    let pairs = found.to_array().into_iter().zip(stored.to_array());
-    for ((found, stored), name) in pairs.zip(NAMES) {
-        if found != stored {
-            return Err(
-                Error::new(format!("{name} is {found} now, and {stored} in the results"))
-                    .in_file(label)
-                    .help("give report the options of the fit, the files as they were, and the same version of brdfit"),
-            );
+pub fn agree(label: &str, found: &Material, stored: &Material) -> Result<(), Error> {
+    let help = "give report the options of the fit, the files as they were, and the same version of brdfit";
+    if found.model != stored.model {
+        let (found, stored) = (found.model.name, stored.model.name);
+        return Err(
+            Error::new(format!("the model is {found} now, and {stored} in the results"))
+                .in_file(label)
+                .help(help),
+        );
+    }
+    let pairs = found.model.named(&found.values).zip(stored.values.iter());
+    for ((name, found), stored) in pairs {
+        if found != *stored {
+            return Err(Error::new(format!(
+                "{name} is {} now, and {} in the results",
+                shortest(found),
+                shortest(*stored)
+            ))
+            .in_file(label)
+            .help(help));
         }
     }
     Ok(())

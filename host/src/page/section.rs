@@ -1,13 +1,12 @@
 //! One scan: its fit, the fits from all starts, and what is drawn of both.
 
-use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 
 use super::provenance::Source;
 use crate::analysis::derived::{self, Value};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
-use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
+use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, Measurement};
 use crate::plot;
@@ -84,9 +83,11 @@ impl Section {
 fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
     let outcome = &report.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
-    let others = minima.iter().filter(other).map(|minimum| minimum.params);
-    let curves: Vec<Params<f64>> = std::iter::once(outcome.params).chain(others).collect();
-    let albedo = |theta_i: f64| derived::at(theta_i, &outcome.params, &outcome.uncertainty).reflectance;
+    let material = outcome.material();
+    let with = |values: Values| Material { values, ..material };
+    let others = minima.iter().filter(other).map(|minimum| with(minimum.params));
+    let curves: Vec<Material> = std::iter::once(material).chain(others).collect();
+    let albedo = |theta_i: f64| derived::at(theta_i, &material, &outcome.uncertainty).reflectance;
     let angles = (0..=STEEPEST).step_by(2).map(f64::from);
     let line: Vec<(f64, Value)> = angles.map(|degrees| (degrees, albedo(degrees.to_radians()))).collect();
     let measured = report
@@ -102,12 +103,12 @@ fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], sta
         },
         Figure {
             name: "residuals",
-            svg: plot::residuals_svg(samples, &outcome.params, outcome.uncertainty.scale),
+            svg: plot::residuals_svg(samples, &material, outcome.uncertainty.scale),
             caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
         },
         Figure {
             name: "polar",
-            svg: plot::polar_svg(samples, &outcome.params),
+            svg: plot::polar_svg(samples, &material),
             caption: "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
         },
         Figure {

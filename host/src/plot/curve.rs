@@ -1,11 +1,11 @@
 //! The model as a polyline with few points.
 
-use brdfit_core::brdf::{ALL, Brdf, Params};
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use std::f64::consts::LOG10_E;
 
 use super::axis::Axis;
+use crate::engine::Material;
 
 /// Lines go this far out of the panel, pixels.
 const OUTSIDE: f64 = 8.0;
@@ -13,13 +13,10 @@ const OUTSIDE: f64 = 8.0;
 /// ln f of a model in the directions of a sample, f in sr^-1; none beyond the horizon.
 pub type LnF<'a> = Box<dyn Fn(&Sample<f64>) -> Option<f64> + 'a>;
 
-/// The model of the paper.
-pub fn eq_14(params: &Params<f64>) -> LnF<'static> {
-    let model = Brdf::<f64, ALL>::new(params);
-    Box::new(move |sample| {
-        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-        Some(model.ln_f(&geometry))
-    })
+/// That of a material.
+pub fn of(material: &Material) -> LnF<'static> {
+    let material = *material;
+    Box::new(move |sample| material.ln_f(sample))
 }
 
 /// The in-plane model over the whole horizontal axis, in pixels, true to `tolerance` pixels.

@@ -1,12 +1,12 @@
 //! Pictures as files: SVG, or PNG that is drawn from it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
 use crate::error::Error;
-use crate::output::replace_file;
+use crate::target::Target;
 
 /// Pixels of a PNG for one of the SVG: 1800 across, 15 cm at 300 dpi.
 const SCALE: f32 = 2.0;
@@ -36,17 +36,15 @@ pub fn name(text: &str) -> Result<PathBuf, String> {
 ///
 /// # Errors
 /// The file can not be written, or the picture not be drawn.
-pub fn save(path: &Path, svg: &str) -> Result<(), Error> {
+pub fn save(target: &Target, svg: &str) -> Result<(), Error> {
+    let path = target.path();
     if path
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
     {
-        replace_file(
-            path,
-            &png(svg).map_err(|error| error.in_file(path.display().to_string()))?,
-        )
+        target.write(&png(svg).map_err(|error| error.in_file(path.display().to_string()))?)
     } else {
-        replace_file(path, svg.as_bytes())
+        target.write(svg.as_bytes())
     }
 }
 

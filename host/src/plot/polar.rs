@@ -1,10 +1,8 @@
 //! The lobes in the plane of incidence as a polar picture with a logarithmic radius.
 
-use std::f64::consts::PI;
 use std::fmt::Write;
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::axis::plain;
@@ -12,7 +10,7 @@ use super::frame::{POINTS, degrees};
 use super::residuals::{by_angle, signed_theta_s};
 use super::svg;
 use super::svg::log10;
-use crate::engine::ln_f;
+use crate::engine::Material;
 
 /// Okabe and Ito's colours, which the colour-blind tell apart too.
 const COLOURS: [&str; 6] = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
@@ -28,10 +26,10 @@ const CENTRE: (f64, f64) = (450.0, 430.0);
 /// Data as crosses and the best fit as lines, BRDF (sr^-1) over signed theta_s, which is 0 upwards and positive to the right.
 ///
 /// Of more than six incident angles an even choice is drawn; the dashed ray is that of incidence.
-pub fn polar_svg(samples: &[Sample<f64>], params: &Params<f64>) -> String {
+pub fn polar_svg(samples: &[Sample<f64>], material: &Material) -> String {
     let all = by_angle(samples);
     let shown: Vec<_> = all.iter().step_by(all.len().div_ceil(COLOURS.len()).max(1)).collect();
-    let lines: Vec<Vec<(f64, f64)>> = shown.iter().map(|(theta_i, _)| line(*theta_i, params)).collect();
+    let lines: Vec<Vec<(f64, f64)>> = shown.iter().map(|(theta_i, _)| line(*theta_i, material)).collect();
     let data = || {
         shown
             .iter()
@@ -83,7 +81,7 @@ pub fn polar_svg(samples: &[Sample<f64>], params: &Params<f64>) -> String {
 }
 
 /// Signed theta_s in degrees and log10 of the model, dense around the specular and the retro direction.
-fn line(theta_i: f64, params: &Params<f64>) -> Vec<(f64, f64)> {
+fn line(theta_i: f64, material: &Material) -> Vec<(f64, f64)> {
     let mut angles: Vec<f64> = (-179..=179).map(|half| 0.5 * f64::from(half)).collect();
     for peak in [theta_i.to_degrees(), -theta_i.to_degrees()] {
         let mut offset = 1e-4;
@@ -96,8 +94,8 @@ fn line(theta_i: f64, params: &Params<f64>) -> Vec<(f64, f64)> {
     angles.retain(|angle| angle.abs() <= 89.5);
     angles.sort_by(f64::total_cmp);
     let value = |theta_s: f64| {
-        let geometry = Geometry::new(theta_i, theta_s.to_radians(), PI).ok()?;
-        Some((theta_s, ln_f(params, &geometry) * std::f64::consts::LOG10_E))
+        let sample = Sample::in_plane(theta_i, theta_s.to_radians(), 1.0);
+        Some((theta_s, material.ln_f(&sample)? * std::f64::consts::LOG10_E))
     };
     angles.into_iter().filter_map(value).collect()
 }

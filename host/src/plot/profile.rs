@@ -6,8 +6,8 @@ use super::axis::Axis;
 use super::frame::frame;
 use super::svg;
 use super::svg::log10;
+use crate::analysis::profile::Profile;
 use crate::analysis::profile::calibrate::{LEVELS, threshold};
-use crate::analysis::profile::{Profile, name};
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;
@@ -74,7 +74,7 @@ fn panel(out: &mut String, profile: &Profile, y: &Axis, width: f64, first: bool)
         Axis::linear(values(), width)
     };
     frame(out, &x, y, first, true);
-    let caption = format!("{} = {}", name(profile), svg::number(profile.best.value));
+    let caption = format!("{} = {}", profile.name, svg::number(profile.best.value));
     svg::text(out, 0.0, -8.0, "", &caption);
     out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">");
     for (level, dashes) in LEVELS.into_iter().zip(["2 4", "7 4"]) {

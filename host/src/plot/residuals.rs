@@ -2,14 +2,13 @@
 
 use std::fmt::Write;
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::axis::Axis;
 use super::frame::{BOTTOM, CAPTION, GAP, LEFT, PANELS, POINTS, RIGHT, WIDTH, degrees, frame};
 use super::svg;
-use crate::engine::ln_f;
+use crate::engine::Material;
 
 const TOP: f64 = 10.0;
 
@@ -17,7 +16,7 @@ const TOP: f64 = 10.0;
 ///
 /// `scale` is the standard deviation of a residual: the bands are one and two of them wide on each side.
 /// All panels share both ranges; of very many angles and samples only some are drawn, as in [`super::scan_svg`].
-pub fn residuals_svg(samples: &[Sample<f64>], params: &Params<f64>, scale: f64) -> String {
+pub fn residuals_svg(samples: &[Sample<f64>], material: &Material, scale: f64) -> String {
     let all = by_angle(samples);
     let panels: Vec<_> = all.iter().step_by(all.len().div_ceil(PANELS).max(1)).collect();
     let columns = match panels.len() {
@@ -30,7 +29,7 @@ pub fn residuals_svg(samples: &[Sample<f64>], params: &Params<f64>, scale: f64) 
     let height = [200.0, 160.0, 130.0][columns - 1];
     let points: Vec<Vec<(f64, f64)>> = panels
         .iter()
-        .map(|(_, samples)| samples.iter().filter_map(|sample| point(sample, params)).collect())
+        .map(|(_, samples)| samples.iter().filter_map(|sample| point(sample, material)).collect())
         .collect();
     let x = Axis::angles(points.iter().flatten().map(|p| p.0), width);
     let band = if scale.is_finite() { 2.2 * scale } else { 0.0 };
@@ -86,10 +85,8 @@ pub fn residuals_svg(samples: &[Sample<f64>], params: &Params<f64>, scale: f64) 
 }
 
 /// Signed theta_s in degrees and the residual; none beyond the horizon.
-fn point(sample: &Sample<f64>, params: &Params<f64>) -> Option<(f64, f64)> {
-    let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
-    let residual = sample.weight * (ln_f(params, &geometry) - Real::ln(sample.brdf));
-    Some((signed_theta_s(sample), residual))
+fn point(sample: &Sample<f64>, material: &Material) -> Option<(f64, f64)> {
+    Some((signed_theta_s(sample), material.residual(sample)?))
 }
 
 /// Degrees, positive forward.

@@ -2,13 +2,14 @@
 
 use std::fmt::Write;
 
-use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
+use brdfit_core::model::Parameter;
 
-use super::curve::{eq_14, mse2};
+use super::curve::{mse2, of};
 use super::frame::LEFT;
 use super::panels::{Line, TRUE_TO, draw};
 use super::svg;
+use crate::engine::Material;
 
 /// Thin lines at most.
 const OTHERS: usize = 24;
@@ -23,13 +24,13 @@ const TOP: f64 = 80.0;
 /// Samples out of plane are projected: theta_s counts as forward where cos(delta_phi) < 0, while the curves are those in plane.
 /// All panels share both ranges: the horizontal one is that of the data, the vertical one that of the data and of the best curve's peak, up to a decade above the data; lines that leave it are cut.
 /// Of very many only some are drawn (every k-th angle, every k-th sample, the best minima), and the picture says so; so the file stays below 100 kB.
-pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) -> String {
+pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Material]) -> String {
     let drawn = &curves[..curves.len().min(1 + OTHERS)];
     let lines: Vec<Line> = drawn
         .iter()
         .enumerate()
-        .map(|(place, params)| Line {
-            ln_f: eq_14(params),
+        .map(|(place, material)| Line {
+            ln_f: of(material),
             style: if place == 0 { svg::THICK } else { svg::THIN }.to_string(),
             true_to: if place == 0 { TRUE_TO } else { OTHERS_TRUE_TO },
         })
@@ -38,7 +39,7 @@ pub fn scan_svg(title: &str, samples: &[Sample<f64>], curves: &[Params<f64>]) ->
 }
 
 /// What the marks mean, how well the curves fit, and the best parameters.
-fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>]) {
+fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Material]) {
     let y = 50.0;
     let measured = format!("measured ({})", samples.len());
     let _ = write!(out, "<g fill=\"none\" stroke-linecap=\"round\">");
@@ -47,10 +48,10 @@ fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>]) {
     let mut entries = vec![(measured, 0)];
     if let Some((best, others)) = curves.split_first() {
         let mse = format!("MSE{}", svg::sup("2"));
-        let error = svg::number(mse2(&eq_14(best), samples));
+        let error = svg::number(mse2(&of(best), samples));
         entries.push((format!("best fit, {mse} = {error}"), 1));
         if let Some(worst) = others.last() {
-            let error = svg::number(mse2(&eq_14(worst), samples));
+            let error = svg::number(mse2(&of(worst), samples));
             let kind = if others.len() == 1 { "minimum" } else { "minima" };
             let range = if others.len() == 1 { "=" } else { "up to" };
             let drawn = match others.len() {
@@ -72,17 +73,18 @@ fn legend(out: &mut String, samples: &[Sample<f64>], curves: &[Params<f64>]) {
     }
     out.push_str("</g>");
     if let Some(best) = curves.first() {
-        let symbols = ["d", "s", "v"]
-            .map(|index| svg::sub("ρ", index))
-            .into_iter()
-            .chain(["m", "n", "κ"].map(svg::italic));
-        let values = best
-            .to_array()
-            .into_iter()
-            .zip(symbols)
-            .map(|(value, symbol)| format!("{symbol} = {}", svg::number(value)));
+        let parameters = best.model.parameters.iter().zip(best.values.iter());
+        let values = parameters.map(|(parameter, &value)| format!("{} = {}", symbol(parameter), svg::number(value)));
         let text = values.collect::<Vec<_>>().join(",  ");
         svg::text(out, LEFT, y + 22.0, svg::INK, &text);
+    }
+}
+
+/// The symbol of a parameter as it is set.
+fn symbol(parameter: &Parameter) -> String {
+    match parameter.symbol.split_once('_') {
+        Some((letter, index)) => svg::sub(letter, index),
+        None => svg::italic(parameter.symbol),
     }
 }
 
@@ -92,8 +94,8 @@ mod tests {
     use crate::plot::axis::Axis;
     use crate::plot::curve::{curve, peak};
 
-    fn params(m: f64) -> Params<f64> {
-        Params::from_array([0.15, 1.0, 0.001, m, 1.1, 0.86])
+    fn params(m: f64) -> Material {
+        Material::paper([0.15, 1.0, 0.001, m, 1.1, 0.86])
     }
 
     fn scan(angles: u32) -> Vec<Sample<f64>> {
@@ -121,10 +123,10 @@ mod tests {
         let x = Axis::angles([-85.0, 85.0].into_iter(), 800.0);
         let y = Axis::logarithm([-2.0, 4.0].into_iter(), 400.0);
         for m in [1e-5, 0.005] {
-            let highest = peak(&eq_14(&params(m)), 30f64.to_radians(), &x);
-            let at = |theta_s: f64| peak(&eq_14(&params(m)), theta_s.to_radians(), &x);
+            let highest = peak(&of(&params(m)), 30f64.to_radians(), &x);
+            let at = |theta_s: f64| peak(&of(&params(m)), theta_s.to_radians(), &x);
             assert!(highest > 2.0 && (highest - at(30.0)).abs() < 1e-12);
-            let line = curve(&eq_14(&params(0.005)), 30f64.to_radians(), &x, &y, TRUE_TO);
+            let line = curve(&of(&params(0.005)), 30f64.to_radians(), &x, &y, TRUE_TO);
             let top = line.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
             assert!((top.0 - x.pixel(30.0)).abs() < 0.5);
         }

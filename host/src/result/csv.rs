@@ -1,17 +1,19 @@
 //! Reports as a table.
 
-use brdfit_core::brdf::{NAMES, Params};
-
 use crate::analysis::fit::FittedScan;
+use crate::engine::Values;
 use crate::names;
-use crate::output::shortest;
+use crate::output::{shortest, write_row};
 use crate::terms::term_names;
 
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(reports: &[FittedScan], minima: bool) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut head = vec!["file", "scan", "samples", "method", "seed", "starts", "terms"];
-    head.extend(["mse2"].iter().chain(&NAMES));
+    let mut head = vec![
+        "file", "scan", "samples", "method", "seed", "starts", "model", "terms", "mse2",
+    ];
+    let names = parameters(reports);
+    head.extend(&names);
     head.extend(if minima {
         ["minimum", "hits", "first_start"].as_slice()
     } else {
@@ -20,10 +22,10 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
     let timed = !minima && reports.iter().any(|report| report.elapsed.is_some());
     head.extend(timed.then_some("elapsed_s"));
     // Writing to memory does not fail.
-    let _ = writer.write_record(&head);
+    let _ = write_row(&mut writer, &head);
     for report in reports {
         let outcome = &report.outcome;
-        let row = |mse2: f64, params: &Params<f64>| {
+        let row = |mse2: f64, params: &Values| {
             let mut row = vec![
                 report.file.clone(),
                 report.scan.clone().unwrap_or_default(),
@@ -31,10 +33,15 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                 names::method(report.options.method).to_string(),
                 report.options.seed.to_string(),
                 report.options.starts().to_string(),
-                term_names(report.options.terms).join("+"),
+                outcome.model.name.to_string(),
+                term_names(outcome.terms).join("+"),
                 shortest(mse2),
             ];
-            row.extend(params.to_array().map(shortest));
+            row.extend(
+                names
+                    .iter()
+                    .map(|name| outcome.model.value(params, name).map_or(String::new(), shortest)),
+            );
             row
         };
         if minima {
@@ -42,7 +49,7 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                 let mut row = row(minimum.mse2, &minimum.params);
                 let counts = [place as u64 + 1, u64::from(minimum.hits), minimum.first_start];
                 row.extend(counts.map(|count| count.to_string()));
-                let _ = writer.write_record(&row);
+                let _ = write_row(&mut writer, &row);
             }
         } else {
             let mut row = row(outcome.mse2, &outcome.params);
@@ -61,8 +68,19 @@ pub fn csv(reports: &[FittedScan], minima: bool) -> String {
                         .map_or(String::new(), |elapsed| shortest(elapsed.as_secs_f64())),
                 );
             }
-            let _ = writer.write_record(&row);
+            let _ = write_row(&mut writer, &row);
         }
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+/// The names of the parameters of all models, each once.
+fn parameters(reports: &[FittedScan]) -> Vec<&'static str> {
+    let mut names = Vec::new();
+    for parameter in reports.iter().flat_map(|report| report.outcome.model.parameters) {
+        if !names.contains(&parameter.name) {
+            names.push(parameter.name);
+        }
+    }
+    names
 }

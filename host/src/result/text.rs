@@ -5,11 +5,9 @@ mod uncertainty;
 
 use std::fmt::Write;
 
-use brdfit_core::brdf::{NAMES, has};
-
 use crate::analysis::fit::{AngleOfIncidence, FittedScan};
-use crate::engine::Minimum;
-use crate::input::left_out;
+use crate::engine::{Minimum, Outcome};
+use crate::input::{label, left_out};
 use crate::names;
 use crate::number::digits;
 use crate::terms::term_names;
@@ -24,10 +22,7 @@ fn page(report: &FittedScan, minima: bool) -> String {
     let (outcome, options) = (&report.outcome, &report.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(match &report.scan {
-        Some(scan) => format!("{} [{scan}]", report.file),
-        None => report.file.clone(),
-    });
+    line(label(&report.file, report.scan.as_deref()));
     line(format!("  read as    {}", report.read_as));
     line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
     if let Some(summary) = left_out::summary(&report.left_out) {
@@ -40,12 +35,23 @@ fn page(report: &FittedScan, minima: bool) -> String {
         options.seed,
         names::precision(options.precision),
     ));
-    line(format!("  terms      {}", term_names(options.terms).join(", ")));
-    for (index, value) in outcome.params.to_array().into_iter().enumerate() {
-        if has(options.terms, index) {
-            let remark = uncertainty::remark(index, &outcome.uncertainty);
-            line(format!("    {:<8} {:>13}{remark}", NAMES[index], digits(value)));
-        }
+    if !outcome.model.is_paper() {
+        line(format!("  model      {} ({})", outcome.model.name, outcome.model.what));
+    }
+    line(match outcome.terms {
+        0 => "  parameters".into(),
+        terms => format!("  terms      {}", term_names(terms).join(", ")),
+    });
+    for index in outcome.present() {
+        let remark = uncertainty::remark(index, &outcome.uncertainty);
+        let parameter = &outcome.model.parameters[index];
+        let unit = if parameter.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", parameter.unit)
+        };
+        let value = digits(outcome.params[index]);
+        line(format!("    {:<8} {value:>13}{unit}{remark}", parameter.name));
     }
     line(format!("  MSE^2      {}", digits(outcome.mse2)));
     line(format!(
@@ -84,11 +90,11 @@ fn page(report: &FittedScan, minima: bool) -> String {
         line(choice);
     }
     let weighted = report.read_as.weighted;
-    for known in uncertainty::lines(&outcome.params, &outcome.uncertainty, &report.derived, weighted) {
+    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &report.derived, weighted) {
         line(known);
     }
     if minima {
-        page += &minima_table(&outcome.minima);
+        page += &minima_table(outcome, &outcome.minima);
     }
     page
 }
@@ -119,15 +125,15 @@ fn angles(angles: &[AngleOfIncidence]) -> String {
     }
 }
 
-fn minima_table(minima: &[Minimum]) -> String {
+fn minima_table(outcome: &Outcome, minima: &[Minimum]) -> String {
     let mut table = format!("\n  {:>3} {:>12}", "#", "MSE^2");
-    for name in NAMES {
-        let _ = write!(table, " {name:>12}");
+    for parameter in outcome.model.parameters {
+        let _ = write!(table, " {:>12}", parameter.name);
     }
     table += "  hits  first start\n";
     for (place, minimum) in minima.iter().enumerate() {
         let _ = write!(table, "  {:>3} {:>12}", place + 1, digits(minimum.mse2));
-        for value in minimum.params.to_array() {
+        for &value in minimum.params.iter() {
             let _ = write!(table, " {:>12}", digits(value));
         }
         let _ = writeln!(table, " {:>5} {:>12}", minimum.hits, minimum.first_start);

@@ -1,13 +1,12 @@
 //! How far the cost may rise before a value is refuted: by the F test, or as copies of the scan show it.
 
-use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::hold::hold;
 use crate::analysis::bootstrap::{Noise, copy, quantile};
-use crate::engine::{self, FitError, FitOptions};
+use crate::engine::{self, FitError, FitOptions, Material, Values};
 
 /// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
 pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
@@ -30,13 +29,17 @@ pub fn thresholds(
     samples: &[Sample<f64>],
     options: &FitOptions,
     index: usize,
-    params: &Params<f64>,
+    params: &Values,
     scale: f64,
     count: u32,
 ) -> Result<[f64; 2], FitError> {
-    let value = params.to_array()[index];
+    let value = params[index];
+    let material = Material {
+        model: options.model,
+        values: *params,
+    };
     let one = |k: u32| {
-        let copy = copy(samples, params, scale, &mut Noise::new(options.seed, u64::from(k)));
+        let copy = copy(samples, &material, scale, &mut Noise::new(options.seed, u64::from(k)));
         let outcome = engine::fit(&copy, options)?;
         let held = hold(&copy, options, &outcome, index, value)?;
         let best = outcome.cost.min(held.cost);

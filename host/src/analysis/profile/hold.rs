@@ -1,9 +1,8 @@
 //! The best fit with one parameter held at a value.
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Block, Sample};
+use brdfit_core::geometry::Sample;
 
-use crate::engine::{self, FitError, FitOptions, Method, Outcome, Precision};
+use crate::engine::{self, FitError, FitOptions, Method, Outcome, Precision, Values};
 
 /// The best fit with the parameter held at a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,10 +12,10 @@ pub struct Point {
     /// Sum of squared residuals of ln f.
     pub cost: f64,
     /// All parameters.
-    pub params: Params<f64>,
+    pub params: Values,
 }
 
-/// The best fit with parameter `index` of [`brdfit_core::brdf::NAMES`] held at `value`: one point of its profile.
+/// The best fit with parameter `index` of the model held at `value`: one point of its profile.
 ///
 /// # Errors
 /// [`FitError`].
@@ -27,40 +26,33 @@ pub fn hold(
     index: usize,
     value: f64,
 ) -> Result<Point, FitError> {
-    Held::new(samples, options, outcome, index)?.at(value, &[outcome.params], true)
+    Held::new(samples, options, outcome, index).at(value, &[outcome.params], true)
 }
 
 /// A scan with one parameter held.
 pub(super) struct Held<'a> {
     samples: &'a [Sample<f64>],
-    pub blocks: Vec<Block<f64>>,
     options: &'a FitOptions,
     index: usize,
-    minima: Vec<Params<f64>>,
+    minima: Vec<Values>,
 }
 
 impl<'a> Held<'a> {
-    pub fn new(
-        samples: &'a [Sample<f64>],
-        options: &'a FitOptions,
-        outcome: &Outcome,
-        index: usize,
-    ) -> Result<Self, FitError> {
-        Ok(Held {
+    pub fn new(samples: &'a [Sample<f64>], options: &'a FitOptions, outcome: &Outcome, index: usize) -> Self {
+        Held {
             samples,
-            blocks: engine::blocks(samples)?,
             options,
             index,
             minima: outcome.minima.iter().map(|minimum| minimum.params).collect(),
-        })
+        }
     }
 
     /// The best of the fits from these parameters and from the minima, all with the held one at `value`.
-    pub fn at(&self, value: f64, starts: &[Params<f64>], searched: bool) -> Result<Point, FitError> {
-        let with = |params: &Params<f64>| {
-            let mut all = params.to_array();
+    pub fn at(&self, value: f64, starts: &[Values], searched: bool) -> Result<Point, FitError> {
+        let with = |params: &Values| {
+            let mut all = *params;
             all[self.index] = value;
-            Params::from_array(all)
+            all
         };
         let options = FitOptions {
             lower: with(&self.options.lower),
@@ -70,11 +62,11 @@ impl<'a> Held<'a> {
             starts: None,
             ..*self.options
         };
-        let mut starts: Vec<Params<f64>> = starts.iter().chain(&self.minima).map(with).collect();
+        let mut starts: Vec<Values> = starts.iter().chain(&self.minima).map(with).collect();
         if searched {
             starts.push(engine::fit(self.samples, &options)?.params);
         }
-        let found = engine::descend(&self.blocks, &options, &starts)?;
+        let found = engine::descend(self.samples, &options, &starts)?;
         let (cost, params) = found.unwrap_or((f64::INFINITY, starts[0]));
         Ok(Point { value, cost, params })
     }

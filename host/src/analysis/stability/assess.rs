@@ -1,13 +1,13 @@
 //! One scan fitted in f64 and in f32, and what the difference costs.
 
-use brdfit_core::brdf::{NAMES, Params, has};
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
+use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 use serde::Serialize;
 
-use super::accuracy::{Errors, errors, model};
+use super::accuracy::{Errors, errors};
 use super::condition::condition;
-use crate::engine::{self, FitError, FitOptions, Outcome, Precision};
+use crate::engine::{self, FitError, FitOptions, Material, Outcome, Precision};
 use crate::names;
 use crate::terms::term_names;
 
@@ -33,8 +33,8 @@ pub struct Assessment {
     pub condition: f64,
     /// Number of those parameters.
     pub free: usize,
-    /// Errors of the model at the optimum, units in the last place of the natural scale.
-    pub error_ulp: Precisions<Errors>,
+    /// Errors of the model at the optimum, units in the last place of the natural scale; none of a model other than Eq. 14, whose exact values are not known.
+    pub error_ulp: Option<Precisions<Errors>>,
     /// How the fits ended.
     pub fit: Precisions<Ended>,
     /// What f32 loses.
@@ -73,7 +73,7 @@ pub struct Loss {
     /// Root of the mean squared difference of the two fitted curves, in ln f.
     pub curve_rms_ln: f64,
     /// One for each parameter.
-    pub parameters: [Change; 6],
+    pub parameters: Vec<Change>,
 }
 
 /// A parameter in both fits, dimensionless.
@@ -99,24 +99,21 @@ impl Assessment {
     }
 }
 
-/// Fits a scan in both number types with a set of terms and compares.
+/// Fits a scan in both number types with the model and terms of `options` and compares.
 ///
 /// # Errors
 /// As [`engine::fit`]; [`FitError::Sample`] also where a sample is no number of f32.
-pub fn assess(name: &str, samples: &[Sample<f64>], terms: u8) -> Result<Assessment, FitError> {
-    let options = FitOptions {
-        terms,
-        ..FitOptions::default()
-    };
-    let double = engine::fit(samples, &options)?;
+pub fn assess(name: &str, samples: &[Sample<f64>], options: &FitOptions) -> Result<Assessment, FitError> {
+    let double = engine::fit(samples, options)?;
     let precision = Precision::F32;
-    let single = engine::fit(samples, &FitOptions { precision, ..options })?;
+    let single = engine::fit(samples, &FitOptions { precision, ..*options })?;
     // All of ln f times the weights of the samples, as the fit sees it.
-    let curve = |params: &Params<f64>| -> Vec<f64> {
+    let curve = |material: &Material| -> Vec<f64> {
         let each = samples.iter();
-        each.map(|sample| sample.weight * ln_f(params, sample)).collect()
+        each.map(|sample| sample.weight * material.ln_f(sample).unwrap_or(f64::NAN))
+            .collect()
     };
-    let (double_curve, single_curve) = (curve(&double.params), curve(&single.params));
+    let (double_curve, single_curve) = (curve(&double.material()), curve(&single.material()));
     let measured: Vec<f64> = samples.iter().map(|s| s.weight * Real::ln(s.brdf)).collect();
     let fit = Precisions {
         f64: ended(&double, sum_of_squares(&double_curve, &measured)),
@@ -125,27 +122,23 @@ pub fn assess(name: &str, samples: &[Sample<f64>], terms: u8) -> Result<Assessme
     let loss = Loss {
         excess_mse2: (fit.f32.mse2 - fit.f64.mse2) / fit.f64.mse2.max(f64::MIN_POSITIVE),
         curve_rms_ln: (sum_of_squares(&single_curve, &double_curve) / samples.len() as f64).sqrt(),
-        parameters: std::array::from_fn(|k| {
-            let (f64, f32) = (double.params.to_array()[k], single.params.to_array()[k]);
-            let change = if f64 == 0.0 { f32 } else { f32 / f64 - 1.0 };
-            let name = NAMES[k];
-            Change { name, f64, f32, change }
-        }),
+        parameters: changes(&double, &single),
     };
-    let columns = free_columns(samples, terms, &double);
-    let (double_error, single_error) = errors(samples, terms, double.params.to_array());
+    let columns = free_columns(samples, &double);
+    let error_ulp = <[f64; 6]>::try_from(&double.params[..]).ok();
+    let error_ulp = error_ulp.filter(|_| options.model.is_paper()).map(|params| {
+        let (f64, f32) = errors(samples, options.terms, params);
+        Precisions { f64, f32 }
+    });
     let close = loss.excess_mse2 <= EXCESS && loss.curve_rms_ln <= CURVE_PART * fit.f64.rms_ln;
     let converged = single.stop.converged();
     Ok(Assessment {
         name: name.into(),
         samples: samples.len(),
-        terms: term_names(terms),
+        terms: term_names(double.terms),
         free: columns.len(),
         condition: condition(columns),
-        error_ulp: Precisions {
-            f64: double_error,
-            f32: single_error,
-        },
+        error_ulp,
         f32_is_good_enough: converged && (close || loss.curve_rms_ln <= RESOLUTION),
         fit,
         loss,
@@ -166,20 +159,30 @@ fn sum_of_squares(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-fn ln_f(params: &Params<f64>, sample: &Sample<f64>) -> f64 {
-    Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)
-        .map_or(f64::NAN, |geometry| engine::ln_f(params, &geometry))
+fn changes(double: &Outcome, single: &Outcome) -> Vec<Change> {
+    let both = double.params.iter().zip(single.params.iter());
+    let change = |(parameter, (&f64, &f32)): (&Parameter, (&f64, &f64))| Change {
+        name: parameter.name,
+        f64,
+        f32,
+        change: if f64 == 0.0 { f32 } else { f32 / f64 - 1.0 },
+    };
+    double.model.parameters.iter().zip(both).map(change).collect()
 }
 
-/// Columns of J of the parameters of `terms` that are inside their bounds and change the curve at all.
-fn free_columns(samples: &[Sample<f64>], terms: u8, outcome: &Outcome) -> Vec<Vec<f64>> {
-    let params = outcome.params.to_array();
-    let rows: Vec<[f64; 7]> = samples
+/// Columns of J of the parameters that are inside their bounds and change the curve at all.
+fn free_columns(samples: &[Sample<f64>], outcome: &Outcome) -> Vec<Vec<f64>> {
+    let material = outcome.material();
+    let rows: Vec<Vec<f64>> = samples
         .iter()
-        .filter_map(|sample| Some(model::<f64>(sample, params)?.map(|x| sample.weight * x)))
+        .filter_map(|sample| {
+            let gradient = material.gradient(sample)?.1;
+            Some(gradient.iter().map(|slope| sample.weight * slope).collect())
+        })
         .collect();
-    let inside = (0..6).filter(|&k| has(terms, k) && !outcome.at_bound.contains(&NAMES[k]));
-    let columns = inside.map(|k| rows.iter().map(|row| row[1 + k]).collect::<Vec<f64>>());
+    let name = |k: usize| outcome.model.parameters[k].name;
+    let inside = outcome.present().filter(|&k| !outcome.at_bound.contains(&name(k)));
+    let columns = inside.map(|k| rows.iter().map(|row| row[k]).collect::<Vec<f64>>());
     // What is below rounding of ln f over the whole range of the parameter is not seen.
     let seen = |column: &Vec<f64>| column.iter().any(|x| x.abs() > 1e-18);
     columns.filter(seen).collect()

@@ -1,13 +1,12 @@
 //! The built-in cases: the paper's synthetic sets, and scenes at the ends of what the model can be.
 
-use brdfit_core::brdf::Params;
-use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 use crate::analysis::paper_sets;
-use crate::engine;
+use crate::engine::Material;
 
 /// Relative noise of the generated scenes, uniform within +- this.
 const NOISE: f64 = 0.01;
@@ -112,7 +111,7 @@ pub fn all() -> Vec<Case> {
 
 /// The model with noise of a fixed seed.
 fn generate(scene: &Scene) -> Vec<Sample<f64>> {
-    let params = Params::from_array(scene.params);
+    let material = Material::paper(scene.params);
     let mut degrees: Vec<f64> = (-85..=85).map(f64::from).collect();
     if let Some((width, step)) = scene.fan {
         let steps = (width / step).round() as i32;
@@ -122,10 +121,10 @@ fn generate(scene: &Scene) -> Vec<Sample<f64>> {
     let mut noise = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut sample = |degrees: f64| {
         let (theta_i, theta_s) = (scene.theta_i_deg.to_radians(), degrees.to_radians());
-        let geometry = Geometry::new(theta_i, theta_s, f64::PI).ok()?;
+        let sample = Sample::in_plane(theta_i, theta_s, 1.0);
         let factor = 1.0 + NOISE * (2.0 * f64::unit(noise.next_u64()) - 1.0);
-        let brdf = Real::exp(engine::ln_f(&params, &geometry)) * factor;
-        Some(Sample::in_plane(theta_i, theta_s, brdf))
+        let brdf = Real::exp(material.ln_f(&sample)?) * factor;
+        Some(Sample { brdf, ..sample })
     };
     degrees.into_iter().filter_map(&mut sample).collect()
 }

@@ -96,7 +96,7 @@ fn half_angles(cos_2d: &Number, cos_sum: &Number) -> (Number, Number) {
     (number(1.0) / cos2_h - number(1.0), cos2_d)
 }
 
-/// ln f (f in sr^-1) and its derivatives by rho_d, rho_s, rho_v, m, n and kappa, each rounded once to f64.
+/// ln f (f in sr^-1) and its derivatives by rho_d, rho_s, rho_v, m, n and kappa, each rounded once to f64; NaN where f is 0.
 pub fn gradient(sample: &Sample<f64>, [rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6]) -> [f64; 7] {
     let (sin_i, cos_i) = number(sample.theta_i).sin_cos();
     let (sin_s, cos_s) = number(sample.theta_s).sin_cos();
@@ -135,6 +135,10 @@ pub fn gradient(sample: &Sample<f64>, [rho_d, rho_s, rho_v, m, n, kappa]: [f64; 
         d[1 + lobe] = lit;
         sum += term;
     }
+    // A BRDF of 0 has no logarithm.
+    if sum <= number(0.0) {
+        return [f64::NAN; 7];
+    }
     let round = |x: &Number| x.to_f64().value();
     std::array::from_fn(|q| match q {
         0 => round(&sum.ln()),
@@ -145,6 +149,14 @@ pub fn gradient(sample: &Sample<f64>, [rho_d, rho_s, rho_v, m, n, kappa]: [f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_has_no_logarithm() {
+        let sample = Sample::in_plane(0.5, 0.4, 1.0);
+        for dark in [[0.0, 0.0, 0.0, 0.1, 2.0, 1.0], [0.0, 1.0, 1.0, 0.1, 1.0, 0.0]] {
+            assert!(gradient(&sample, dark).iter().all(|x| x.is_nan()));
+        }
+    }
 
     /// Against the 60-digit values of another program, which cover extremes.
     ///

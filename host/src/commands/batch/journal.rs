@@ -1,4 +1,6 @@
 //! The records of an unfinished run, in the order in which the files were finished; a run that is killed leaves all but perhaps its last line.
+//!
+//! Nothing in the file is ever taken away: what is no whole record is passed over, and said.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -15,6 +17,8 @@ pub struct Journal {
     /// Of each file of the batch, where its last record is.
     places: Vec<Option<Place>>,
     end: u64,
+    /// The lines that are no whole records; the first line of a file is 1.
+    pub damaged: Vec<u64>,
 }
 
 /// Where the record of a file is, and whether it still holds.
@@ -34,14 +38,15 @@ impl Journal {
     /// # Errors
     /// There is one of another batch, or one that was not to be there, or another process writes to it.
     pub fn open(path: PathBuf, head: &Head, resume: bool) -> Result<Journal, Error> {
-        let fail = |what: String, help: &str| Error::new(what).in_file(path.display().to_string()).help(help);
+        let shown = path.display().to_string();
+        let fail = |what: String, help: &str| Error::new(what).in_file(&shown).help(help);
         let broken = |error: std::io::Error| {
             fail(
-                format!("can not be written: {error}"),
+                format!("cannot be written: {error}"),
                 "check that the folder is there and writable",
             )
         };
-        let mut file = OpenOptions::new()
+        let file = OpenOptions::new()
             .read(true)
             .write(true)
             .create(true)
@@ -55,30 +60,24 @@ impl Journal {
                 "wait for it to end, or take another --out",
             ));
         }
-        let mut places = vec![None; head.files];
-        let mut end = 0;
-        if file.metadata().map_err(broken)?.len() > 0 {
-            if !resume {
-                return Err(fail(
-                    "here are the finished fits of a run that was interrupted".into(),
-                    "add --resume to go on from them, or remove the file",
-                ));
-            }
-            end = read(&file, &path, head, &mut places)?;
-        }
-        // What a kill left of a last line goes.
-        file.set_len(end)
-            .and_then(|()| file.seek(SeekFrom::Start(end)))
-            .map_err(broken)?;
         let mut journal = Journal {
-            path,
             file,
-            places,
-            end,
+            places: vec![None; head.files],
+            end: 0,
+            damaged: Vec::new(),
+            path,
         };
-        if end == 0 {
+        if journal.file.metadata().map_err(broken)?.len() == 0 {
             journal.append(record::line(head).as_bytes())?;
+            return Ok(journal);
         }
+        if !resume {
+            return Err(fail(
+                "here are the finished fits of a run that was interrupted".into(),
+                "add --resume to go on from them, or remove the file",
+            ));
+        }
+        journal.read(head)?;
         Ok(journal)
     }
 
@@ -88,12 +87,7 @@ impl Journal {
     /// The disk is full or gone.
     pub fn keep(&mut self, record: &Record) -> Result<(), Error> {
         let line = record::line(record);
-        let place = Place {
-            at: self.end,
-            length: line.len() as u64,
-            contents: record.contents,
-            failed: record.failed(),
-        };
+        let place = Place::of(record, self.end, line.as_bytes());
         self.append(line.as_bytes())?;
         self.places[record.index] = Some(place);
         Ok(())
@@ -123,54 +117,84 @@ impl Journal {
             .seek(SeekFrom::Start(place.at))
             .and_then(|_| self.file.read_exact(&mut line));
         read.map_err(|error| self.broken(&error))?;
-        serde_json::from_slice(&line).map_err(|error| self.broken(&error.into()))
+        let changed = || std::io::Error::other("a record was changed meanwhile");
+        record::of_line(&line).ok_or_else(|| self.broken(&changed()))
     }
 
     /// The run is at its end, and its results are written.
     pub fn remove(self) {
-        // What can not be removed can be resumed.
+        // What cannot be removed can be resumed.
         let _ = std::fs::remove_file(&self.path);
     }
 
     fn broken(&self, error: &std::io::Error) -> Error {
-        Error::new(format!("can not be kept: {error}"))
+        Error::new(format!("cannot be kept: {error}"))
             .in_file(self.path.display().to_string())
             .help("check the disk, and go on with --resume")
     }
+
+    /// Finds the records that are there.
+    fn read(&mut self, head: &Head) -> Result<(), Error> {
+        let help = "remove the file, or take the options and files of the run that was interrupted";
+        let path = self.path.clone();
+        let fail =
+            |error: std::io::Error| Error::new(format!("cannot be read: {error}")).in_file(path.display().to_string());
+        let mut lines = BufReader::new(&self.file);
+        let Some((found, length)) = record::head(&mut lines).map_err(fail)? else {
+            return Err(Error::new("this is no file of finished fits")
+                .in_file(path.display().to_string())
+                .help("move it elsewhere, or take another --out"));
+        };
+        record::agree(&found, head, &path, help)?;
+        let (mut end, mut number) = (length, 1);
+        let mut line = Vec::new();
+        let mut torn = false;
+        while lines.read_until(b'\n', &mut line).map_err(fail)? > 0 {
+            number += 1;
+            let record = record::of_line::<Record>(&line);
+            let place = record.as_ref().and_then(|record| self.places.get_mut(record.index));
+            match (record.as_ref(), place) {
+                (Some(record), Some(place)) => *place = Some(Place::of(record, end, &line)),
+                _ => self.damaged.push(number),
+            }
+            torn = !line.ends_with(b"\n");
+            end += line.len() as u64;
+            line.clear();
+        }
+        self.end = end;
+        self.file.seek(SeekFrom::Start(end)).map_err(fail)?;
+        // What a kill left of a last line ends here, so that the next record has a line of its own.
+        if torn { self.append(b"\n") } else { Ok(()) }
+    }
 }
 
-/// Finds the records that are there; the result is where the last whole one ends.
-fn read(file: &File, path: &Path, head: &Head, places: &mut [Option<Place>]) -> Result<u64, Error> {
-    let help = "remove the file, or take the options and files of the run that was interrupted";
-    let fail =
-        |error: std::io::Error| Error::new(format!("can not be read: {error}")).in_file(path.display().to_string());
-    let mut lines = BufReader::new(file);
-    let mut line = Vec::new();
-    let mut end = 0;
-    while lines.read_until(b'\n', &mut line).map_err(fail)? > 0 && line.ends_with(b"\n") {
-        if end == 0 {
-            let found: Head = serde_json::from_slice(&line).map_err(|_| {
-                Error::new("this is no file of finished fits")
-                    .in_file(path.display().to_string())
-                    .help(help)
-            })?;
-            record::agree(&found, head, path, help)?;
-        } else {
-            let Ok(record) = serde_json::from_slice::<Record>(&line) else {
-                break;
-            };
-            let Some(place) = places.get_mut(record.index) else {
-                break;
-            };
-            *place = Some(Place {
-                at: end,
-                length: line.len() as u64,
-                contents: record.contents,
-                failed: record.failed(),
-            });
+impl Place {
+    fn of(record: &Record, at: u64, line: &[u8]) -> Place {
+        Place {
+            at,
+            length: line.len() as u64,
+            contents: record.contents,
+            failed: record.failed(),
         }
-        end += line.len() as u64;
-        line.clear();
     }
-    Ok(end)
+}
+
+/// Makes a journal of a part that is finished, so that only what is damaged in it is fitted again; nothing if there is no such part, or a journal already.
+///
+/// # Errors
+/// The part is of another batch, or cannot be read or copied.
+pub fn take_over(part: &Path, journal: &Path, head: &Head) -> Result<(), Error> {
+    let fail =
+        |error: std::io::Error| Error::new(format!("cannot be read: {error}")).in_file(part.display().to_string());
+    if journal.exists() || !part.is_file() {
+        return Ok(());
+    }
+    let found = File::open(part).and_then(|file| record::head(&mut BufReader::new(file)));
+    let Some((found, _)) = found.map_err(fail)? else {
+        return Err(Error::new("this is no part of a batch")
+            .in_file(part.display().to_string())
+            .help("move it elsewhere, or take another --out"));
+    };
+    record::agree(&found, head, part, "remove the file, or leave out --resume")?;
+    std::fs::copy(part, journal).map(drop).map_err(fail)
 }

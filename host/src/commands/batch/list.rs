@@ -4,29 +4,30 @@ use std::collections::HashSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use super::own;
 use crate::error::{Error, shown};
 use crate::input::bytes::{self, STDIN};
 
 /// The files that the arguments name, in their order, each once: what a folder or a pattern stands for is sorted by name.
 ///
-/// `leave_out` is the name of the results: files that begin with it are no scans, even if they are in a folder that is.
+/// Results, parts and finished fits of batches to `out` are no scans, even if they are in a folder or match a pattern.
 ///
 /// # Errors
-/// A name that stands for no file.
-pub fn files(arguments: &[PathBuf], leave_out: &Path, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
+/// A name that stands for no file, or a folder that cannot be listed.
+pub fn files(arguments: &[PathBuf], out: &Path, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
     let mut all = Vec::new();
     for argument in arguments {
         let text = argument.to_string_lossy();
         if let Some(list) = text.strip_prefix('@') {
             all.extend(listed(list, input)?);
         } else if text == STDIN {
-            return Err(Error::new("- is no batch").help("give a list of files on standard input as @-"));
+            return Err(Error::new("- alone stands for no scans").help("give a list of files on standard input as @-"));
         } else if argument.is_dir() {
-            all.extend(folder(argument, leave_out)?);
+            all.extend(folder(argument, out)?);
         } else if argument.exists() || !text.contains(['*', '?', '[']) {
             all.push(argument.clone());
         } else {
-            all.extend(matches(&text, leave_out)?);
+            all.extend(matches(&text, out)?);
         }
     }
     let mut seen = HashSet::with_capacity(all.len());
@@ -59,19 +60,14 @@ fn listed(list: &str, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// The files in a folder, without hidden ones, and without those in folders inside.
-fn folder(path: &Path, leave_out: &Path) -> Result<Vec<PathBuf>, Error> {
-    let fail = |error: std::io::Error| {
-        Error::new(format!("can not be listed: {error}"))
-            .in_file(path.display().to_string())
-            .help("check its permissions")
-    };
+fn folder(path: &Path, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
-    for entry in path.read_dir().map_err(fail)? {
-        let path = entry.map_err(fail)?.path();
+    for entry in path.read_dir().map_err(|error| unlisted(path, &error))? {
+        let path = entry.map_err(|error| unlisted(path, &error))?.path();
         let hidden = path
             .file_name()
             .is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        if !hidden && path.is_file() && !is_result(&path, leave_out) {
+        if !hidden && may_be_scan(&path, out) {
             files.push(path);
         }
     }
@@ -79,14 +75,17 @@ fn folder(path: &Path, leave_out: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(files)
 }
 
-fn matches(pattern: &str, leave_out: &Path) -> Result<Vec<PathBuf>, Error> {
+fn matches(pattern: &str, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let fail =
         |what: String| Error::new(what).help("in a pattern, * ? [] stand for other characters, and ** for folders");
     let paths = glob::glob(pattern).map_err(|error| fail(format!("'{}' is no pattern: {error}", shown(pattern))))?;
-    let mut files: Vec<PathBuf> = paths
-        .flatten()
-        .filter(|path| path.is_file() && !is_result(path, leave_out))
-        .collect();
+    let mut files = Vec::new();
+    for path in paths {
+        let path = path.map_err(|error| unlisted(error.path(), error.error()))?;
+        if may_be_scan(&path, out) {
+            files.push(path);
+        }
+    }
     files.sort();
     if files.is_empty() {
         return Err(fail(format!("no file matches '{}'", shown(pattern))));
@@ -94,24 +93,15 @@ fn matches(pattern: &str, leave_out: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(files)
 }
 
-/// Is this the file of results of this very batch, or one of its parts?
-fn is_result(path: &Path, results: &Path) -> bool {
-    let beside = |path: &Path| {
-        path.parent().and_then(|folder| {
-            if folder == Path::new("") {
-                Path::new(".")
-            } else {
-                folder
-            }
-            .canonicalize()
-            .ok()
-        })
-    };
-    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
-    match (name(path), name(results)) {
-        (Some(path_name), Some(result)) => path_name.starts_with(&result) && beside(path) == beside(results),
-        _ => false,
-    }
+fn unlisted(folder: &Path, error: &std::io::Error) -> Error {
+    Error::new(format!("cannot be listed: {error}"))
+        .in_file(folder.display().to_string())
+        .help("check its permissions, or name the scans without it")
+}
+
+/// A file is a scan unless it is of this very batch; a link that leads nowhere has a row that says so.
+fn may_be_scan(path: &Path, out: &Path) -> bool {
+    path.metadata().map_or(true, |there| there.is_file()) && !own::is_own(path, out)
 }
 
 #[cfg(test)]
@@ -152,6 +142,26 @@ mod tests {
                 .collect()
         };
         assert_eq!(names(&[""], ""), ["a.csv", "b.csv", "c.txt"]);
+        // What only has the name of a result, or one that begins like it, is a scan.
+        for name in [
+            "out.csv",
+            "out.csv.partial",
+            "out.csv.1-of-2",
+            "out.csv.bak",
+            "out.csv2",
+        ] {
+            std::fs::write(path(name), "theta_i,theta_s,brdf\n").unwrap();
+        }
+        assert_eq!(names(&[""], "").len(), 8);
+        for name in [
+            "out.csv",
+            "out.csv.partial",
+            "out.csv.1-of-2",
+            "out.csv.bak",
+            "out.csv2",
+        ] {
+            std::fs::remove_file(path(name)).unwrap();
+        }
         assert_eq!(names(&["c.txt", "*.csv", "a.csv"], ""), ["c.txt", "a.csv", "b.csv"]);
         assert_eq!(names(&["**/*.csv"], ""), ["a.csv", "b.csv", "inner/d.csv"]);
         let list = format!(

@@ -1,8 +1,9 @@
-//! What is kept of a fitted file: one line of JSON, in a file that begins with a line that says of which batch it is.
+//! What is kept of a fitted file: one line of JSON with its checksum, in a file that begins with a line that says of which batch it is.
 
-use std::io;
+use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::shard::Shard;
@@ -121,10 +122,31 @@ pub fn names(files: &[PathBuf]) -> u64 {
     hash
 }
 
-/// A line of a file of records.
+/// A line of a file of records: the fingerprint of its JSON in 16 digits, a space, and the JSON.
 pub fn line(value: &impl Serialize) -> String {
     // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string(value).unwrap_or_default() + "\n"
+    let json = serde_json::to_string(value).unwrap_or_default();
+    format!("{:016x} {json}\n", fingerprint(json.as_bytes()))
+}
+
+/// What [`line`] wrote; `None` if any byte of the line, or its end, is not as it was written.
+pub fn of_line<T: DeserializeOwned>(line: &[u8]) -> Option<T> {
+    let (sum, json) = line.strip_suffix(b"\n")?.split_at_checked(16)?;
+    let json = json.strip_prefix(b" ")?;
+    let written = format!("{:016x}", fingerprint(json));
+    (sum == written.as_bytes()).then(|| serde_json::from_slice(json).ok())?
+}
+
+/// The first line of a file of records; `None` if it is another file.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn head(file: &mut impl BufRead) -> io::Result<Option<(Head, u64)>> {
+    /// No head is nearly as long.
+    const LONGEST: u64 = 1 << 20;
+    let mut line = Vec::new();
+    file.take(LONGEST).read_until(b'\n', &mut line)?;
+    Ok(of_line(&line).map(|head| (head, line.len() as u64)))
 }
 
 /// Where the finished files of an unfinished run are kept: `results.csv.partial`, or `results.csv.2-of-4.partial`.
@@ -170,4 +192,44 @@ pub fn agree(found: &Head, wanted: &Head, file: &Path, help: &str) -> Result<(),
         return Ok(());
     };
     Err(Error::new(what).in_file(file.display().to_string()).help(help))
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// Of a batch of one file.
+    pub fn head() -> Head {
+        Head {
+            brdfit: "0".into(),
+            options: String::new(),
+            files: 1,
+            names: 0,
+            rows: Rows::Cells,
+            columns: Vec::new(),
+            shard: Shard::WHOLE,
+        }
+    }
+
+    #[test]
+    fn any_flipped_bit_is_found() {
+        let record = Record {
+            index: 3,
+            contents: 17,
+            scans: vec![Fitted {
+                row: Row::Cells(vec!["a.csv".into(), "0.25".into()]),
+                line: Err("no".into()),
+            }],
+        };
+        let line = line(&record).into_bytes();
+        assert_eq!(of_line(&line), Some(record));
+        for place in 0..line.len() {
+            for bit in 0..8 {
+                let mut flipped = line.clone();
+                flipped[place] ^= 1 << bit;
+                assert_eq!(of_line::<Record>(&flipped), None, "{place} {bit}");
+            }
+            assert_eq!(of_line::<Record>(&line[..place]), None);
+        }
+    }
 }

@@ -8,6 +8,7 @@ use clap::ValueEnum;
 use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
+use crate::output::write_row;
 
 /// The form of the file of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -82,9 +83,9 @@ pub fn write(
 
 fn csv(columns: &[String], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns)?;
+    write_row(&mut writer, columns)?;
     for row in rows {
-        writer.write_record(cells(row?)?)?;
+        write_row(&mut writer, &cells(row?)?)?;
     }
     writer.flush()
 }

@@ -31,7 +31,7 @@ pub struct Job<'a> {
 /// Fits the files at `places` that the journal does not have as they are now, on the threads of the current pool; the result is how many are done, which are all but after an interrupt.
 ///
 /// # Errors
-/// A result can not be kept; what is wrong with a scan is kept as its result.
+/// A result cannot be kept; what is wrong with a scan is kept as its result.
 pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn() + Sync)) -> Result<usize, Error> {
     let one = |&index: &usize| {
         if job.interrupt.load(Ordering::Relaxed) {
@@ -41,7 +41,9 @@ pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn
         let contents = bytes.as_ref().map_or(0, |bytes| fingerprint(bytes));
         let known = lock(journal).place(index);
         if !known.is_some_and(|place| !place.failed && place.contents == contents) {
-            let scans = scans(job, &job.files[index], bytes);
+            let Some(scans) = scans(job, &job.files[index], bytes) else {
+                return Ok(0);
+            };
             lock(journal).keep(&Record { index, contents, scans })?;
         }
         done();
@@ -54,17 +56,22 @@ fn lock(journal: &Mutex<Journal>) -> std::sync::MutexGuard<'_, Journal> {
     journal.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// The scans of a file, fitted.
-fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Vec<Fitted> {
+/// The scans of a file, fitted; `None` after an interrupt.
+fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fitted>> {
     let name = path.display().to_string();
-    let one = |measurement: Measurement| match fit(&measurement, &job.options) {
-        Ok(report) => fitted(job, report, &measurement),
-        Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
+    let one = |measurement: Measurement| {
+        if job.interrupt.load(Ordering::Relaxed) {
+            return None;
+        }
+        Some(match fit(&measurement, &job.options) {
+            Ok(report) => fitted(job, report, &measurement),
+            Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
+        })
     };
     match bytes.and_then(|bytes| input::parse(&name, &bytes, job.read)) {
         // Spectral files hold many scans, so these are shared among the threads too.
         Ok(measurements) => measurements.into_par_iter().map(one).collect(),
-        Err(error) => vec![failed(job, &name, None, &error)],
+        Err(error) => Some(vec![failed(job, &name, None, &error)]),
     }
 }
 
@@ -76,7 +83,11 @@ fn fitted(job: &Job, mut report: FittedScan, measurement: &Measurement) -> Fitte
         Rows::Objects => Row::Object(result::json(std::slice::from_ref(&report)).trim_end().to_string()),
         Rows::Cells => {
             let mut cells = table(std::slice::from_ref(&report)).pop().unwrap_or_default();
-            let angles: Vec<String> = line.theta_i.iter().map(f64::to_string).collect();
+            let angles: Vec<String> = line
+                .theta_i
+                .iter()
+                .map(|&angle| crate::output::shortest(angle))
+                .collect();
             cells.extend([
                 angles.join("+"),
                 crate::output::shortest(line.high),

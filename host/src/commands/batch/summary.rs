@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::record::{Line, Record};
 use crate::error::Error;
+use crate::output::shortest;
 use crate::streams::{Ended, Streams};
 
 /// Lines that are printed; means are over all.
@@ -85,7 +86,7 @@ impl Summary {
         let angles = |line: &Line| {
             line.theta_i
                 .iter()
-                .map(|angle| format!("{angle}"))
+                .map(|&angle| shortest(angle))
                 .collect::<Vec<_>>()
                 .join(", ")
         };

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
-use crate::output::shortest;
+use crate::output::{self, shortest, write_row};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -15,10 +15,7 @@ struct Document<'a> {
 
 /// One object with everything.
 pub fn json(scans: &[ScanStudy], seeds: u32) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    let mut text = serde_json::to_string_pretty(&Document { seeds, scans }).unwrap_or_default();
-    text.push('\n');
-    text
+    output::json(&Document { seeds, scans })
 }
 
 /// One row a point of the grid and quantity; a cell is empty where too few runs have begun.
@@ -26,7 +23,7 @@ pub fn csv(scans: &[ScanStudy]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut row = |cells: [&str; 9]| {
         // A Vec takes all.
-        let _ = writer.write_record(cells);
+        let _ = write_row(&mut writer, &cells);
     };
     row([
         "scan",

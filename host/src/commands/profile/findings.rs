@@ -1,9 +1,7 @@
 //! What the command found about one scan.
 
-use brdfit_core::brdf::Params;
-
 use crate::analysis::profile::Profile;
-use crate::engine::Outcome;
+use crate::engine::{Outcome, Values};
 
 /// Profiles and copies of one scan.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +13,7 @@ pub struct Findings {
     /// One for each parameter asked for.
     pub profiles: Vec<Profile>,
     /// The parameters of each copy; empty without bootstrap.
-    pub copies: Vec<Params<f64>>,
+    pub copies: Vec<Values>,
     /// The number of copies at each end of an interval whose thresholds are measured; 0 for those of the F test.
     pub calibrated: u32,
     /// The seed of the search and of the copies.

@@ -1,16 +1,18 @@
 //! Profiles as JSON.
 
-use brdfit_core::brdf::NAMES;
 use serde::Serialize;
 
 use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{Interval, Profile};
+use crate::engine::Outcome;
+use crate::output;
 
 #[derive(Serialize)]
 struct Document<'a> {
     file: &'a str,
+    model: &'static str,
     samples: usize,
     /// Standard deviation of a residual of ln f.
     residual_scale: f64,
@@ -47,8 +49,8 @@ struct At {
     cost: f64,
     /// Above the best, over the variance of a residual.
     rise: f64,
-    /// In the order rho_d, rho_s, rho_v, m, n, kappa.
-    parameters: [f64; 6],
+    /// In the order of the model: rho_d, rho_s, rho_v, m, n, kappa for that of the paper.
+    parameters: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -70,13 +72,14 @@ pub fn write(findings: &Findings) -> String {
     let known = &findings.outcome.uncertainty;
     let document = Document {
         file: &findings.name,
+        model: findings.outcome.model.name,
         samples: findings.outcome.samples,
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
         parameters: findings
             .profiles
             .iter()
-            .map(|profile| parameter(profile, known.stderr))
+            .map(|profile| parameter(profile, &findings.outcome))
             .collect(),
         calibrated: Some(findings.calibrated).filter(|&copies| copies > 0),
         bootstrap: (!findings.copies.is_empty()).then(|| Bootstrap {
@@ -89,11 +92,10 @@ pub fn write(findings: &Findings) -> String {
                 .collect(),
         }),
     };
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+    output::json(&document)
 }
 
-fn parameter(profile: &Profile, stderr: [f64; 6]) -> Parameter {
+fn parameter(profile: &Profile, outcome: &Outcome) -> Parameter {
     let ends = |interval: Interval| Ends {
         level: interval.level,
         low: interval.low.value,
@@ -105,21 +107,21 @@ fn parameter(profile: &Profile, stderr: [f64; 6]) -> Parameter {
         value: point.value,
         cost: point.cost,
         rise: profile.rise(point),
-        parameters: point.params.to_array(),
+        parameters: point.params.to_vec(),
     });
     Parameter {
-        name: NAMES[profile.index],
+        name: outcome.model.parameters[profile.index].name,
         best: profile.best.value,
-        stderr: Some(stderr[profile.index]).filter(|&error| error > 0.0),
+        stderr: Some(outcome.uncertainty.stderr[profile.index]).filter(|&error| error > 0.0),
         intervals: profile.intervals.map(ends),
         points: points.collect(),
     }
 }
 
 fn percentiles(findings: &Findings, index: usize) -> Percentiles {
-    let values: Vec<f64> = findings.copies.iter().map(|params| params.to_array()[index]).collect();
+    let values: Vec<f64> = findings.copies.iter().map(|params| params[index]).collect();
     Percentiles {
-        name: NAMES[index],
+        name: findings.outcome.model.parameters[index].name,
         median: quantile(&values, 0.5),
         intervals: LEVELS.map(|level| [0.5 - 0.5 * level, 0.5 + 0.5 * level].map(|share| quantile(&values, share))),
     }

@@ -2,8 +2,6 @@
 
 use std::fmt::Write;
 
-use brdfit_core::brdf::NAMES;
-
 use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
@@ -26,18 +24,19 @@ pub fn write(findings: &Findings) -> String {
         let _ = writeln!(page, "{}", line.trim_end());
     };
     row(&mut page, ["", "best", "+-", "68 % interval", "95 % interval"]);
+    let name = |index: usize| findings.outcome.model.parameters[index].name;
     let mut notes = String::new();
     for profile in &findings.profiles {
         let index = profile.index;
         let [one, two] = profile.intervals.map(|interval| shown(&interval));
         let error = known.stderr[index];
         let error = if error > 0.0 { short(error) } else { "-".into() };
-        row(&mut page, [NAMES[index], &six(profile.best.value), &error, &one, &two]);
+        row(&mut page, [name(index), &six(profile.best.value), &error, &one, &two]);
         if profile.best.cost < findings.outcome.cost * (1.0 - 1e-6) {
             let _ = writeln!(
                 notes,
                 "  The profile of {} met a better fit than the search: MSE^2 is lower by {}.",
-                NAMES[index],
+                name(index),
                 percent(1.0 - profile.best.cost / findings.outcome.cost)
             );
         }
@@ -51,7 +50,7 @@ pub fn write(findings: &Findings) -> String {
         );
         for profile in &findings.profiles {
             let index = profile.index;
-            let values: Vec<f64> = findings.copies.iter().map(|params| params.to_array()[index]).collect();
+            let values: Vec<f64> = findings.copies.iter().map(|params| params[index]).collect();
             let [one, two] = LEVELS.map(|level| {
                 let (low, high) = (
                     quantile(&values, 0.5 - 0.5 * level),
@@ -59,7 +58,7 @@ pub fn write(findings: &Findings) -> String {
                 );
                 format!("{} to {}", six(low), six(high))
             });
-            row(&mut page, [NAMES[index], &six(quantile(&values, 0.5)), "", &one, &two]);
+            row(&mut page, [name(index), &six(quantile(&values, 0.5)), "", &one, &two]);
         }
     }
     page.push('\n');

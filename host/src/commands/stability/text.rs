@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::analysis::stability::assess::{Assessment, CURVE_PART, DIFFERENT, EXCESS, Ended, RESOLUTION};
+use crate::analysis::stability::accuracy::Errors;
+use crate::analysis::stability::assess::{Assessment, CURVE_PART, DIFFERENT, EXCESS, Ended, Precisions, RESOLUTION};
 
 /// rms residuals below this are those of data without noise, where a relative excess says nothing.
 const NOISELESS: f64 = 1e-7;
@@ -31,7 +32,8 @@ pub fn write(cases: &[Assessment]) -> String {
 }
 
 fn row(case: &Assessment, width: usize) -> String {
-    let (ulp, fit, loss) = (&case.error_ulp, &case.fit, &case.loss);
+    let (fit, loss) = (&case.fit, &case.loss);
+    let error = |of: fn(&Precisions<Errors>) -> f64| case.error_ulp.as_ref().map_or("-".into(), |ulp| units(of(ulp)));
     let excess = if fit.f64.rms_ln < NOISELESS {
         "-".into()
     } else {
@@ -41,10 +43,10 @@ fn row(case: &Assessment, width: usize) -> String {
     let mut row = format!(
         "{name:width$} {:>9.1e} | {:>5} {:>5} | {:>5} {:>5} | {:>9} {:>9}",
         case.condition,
-        units(ulp.f64.ln_f),
-        units(ulp.f32.ln_f),
-        units(ulp.f64.gradient),
-        units(ulp.f32.gradient),
+        error(|ulp| ulp.f64.ln_f),
+        error(|ulp| ulp.f32.ln_f),
+        error(|ulp| ulp.f64.gradient),
+        error(|ulp| ulp.f32.gradient),
         end(&fit.f64),
         end(&fit.f32)
     );

@@ -6,7 +6,7 @@ use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::number;
-use crate::input::units::{Angles, Quantity};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -72,9 +72,6 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         .map(|&value| {
             let column = |place: usize| place as u64 + 1;
             RawScan {
-                names: vec![names[value].to_string()],
-                angles: Angles::Rad,
-                quantity: Quantity::Brdf,
                 places: Places {
                     theta_i: Some(column(theta_i)),
                     theta_s: Some(column(theta_s)),
@@ -82,7 +79,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
                     value: Some(column(value)),
                     weight: None,
                 },
-                rows: Vec::new(),
+                ..RawScan::new(vec![names[value].to_string()], Angles::Rad)
             }
         })
         .collect();

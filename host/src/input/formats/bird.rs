@@ -7,8 +7,8 @@ use crate::error::{Error, shown};
 use crate::input::bytes::Lines;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{Places, RawScan, Row, Weight};
-use crate::input::units::{Angles, Quantity};
+use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -18,9 +18,9 @@ pub const FORMAT: Format = Format {
     reader: Reader::Text { is, read },
 };
 
-/// True of a JSON object.
+/// True of a JSON object with data of this name.
 fn is(text: &str) -> bool {
-    text.trim_start().starts_with('{')
+    text.trim_start().starts_with('{') && text.contains("\"data\"") && text.contains("\"BRDF\"")
 }
 
 #[derive(Deserialize)]
@@ -111,11 +111,8 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         match scans.iter_mut().find(|scan| scan.names == names) {
             Some(scan) => scan.rows.push(row),
             None => scans.push(RawScan {
-                names,
-                angles: Angles::Deg,
-                quantity: Quantity::Brdf,
-                places: Places::default(),
                 rows: vec![row],
+                ..RawScan::new(names, Angles::Deg)
             }),
         }
     }

@@ -27,9 +27,6 @@ fn is(text: &str) -> bool {
 /// Angles are not in degrees, a row has other than two or three numbers, or no specular direction stands before it.
 fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
         places: Places {
             theta_i: Some(1),
             theta_s: Some(1),
@@ -37,7 +34,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             value: Some(3),
             weight: None,
         },
-        rows: Vec::new(),
+        ..RawScan::new(Vec::new(), Angles::Deg)
     };
     let mut scale = 1.0;
     let mut specular = None;

@@ -5,7 +5,7 @@ use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::{self, number};
-use crate::input::units::{Angles, Quantity};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -28,9 +28,6 @@ fn is(text: &str) -> bool {
 /// A row has other than five numbers, or there is none.
 fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
         places: Places {
             theta_i: Some(1),
             theta_s: Some(3),
@@ -38,7 +35,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             value: Some(5),
             weight: None,
         },
-        rows: Vec::new(),
+        ..RawScan::new(Vec::new(), Angles::Deg)
     };
     rows::for_each(text, |line, cells| {
         let number = |column| number(cells, column).map_err(|error| error.at_line(line));

@@ -3,9 +3,9 @@
 use crate::error::Error;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::raw::{RawScan, Row, Weight};
 use crate::input::rows::{self, number};
-use crate::input::units::{Angles, Quantity};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -64,13 +64,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new("there are no rows below the angles").help("give one row a scattering angle"));
     }
     let turned = head.iter().any(|&angle| angle < 0.0) && body.iter().all(|row| row.1 >= 0.0);
-    let mut scan = RawScan {
-        names: Vec::new(),
-        angles: Angles::Deg,
-        quantity: Quantity::Brdf,
-        places: Places::default(),
-        rows: Vec::new(),
-    };
+    let mut scan = RawScan::new(Vec::new(), Angles::Deg);
     for (line, side, values) in body {
         for (&top, value) in head.iter().zip(values) {
             let (theta_i, theta_s) = if turned { (side, top) } else { (top, side) };

@@ -1,13 +1,11 @@
 //! MERL `.binary`: reflectance of isotropic materials over half angle and difference angles, in three colours.
 
-use libm::{atan2, sqrt};
-
 use crate::error::Error;
-use crate::input::direction::sin_cos;
+use crate::input::direction::of_half_angles;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{Places, RawScan, Row, Weight};
-use crate::input::units::{Angles, Quantity};
+use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -65,11 +63,8 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             })
         };
         RawScan {
-            names: vec![name.to_string()],
-            angles: Angles::Deg,
-            quantity: Quantity::Brdf,
-            places: Places::default(),
             rows: places.iter().filter_map(row).collect(),
+            ..RawScan::new(vec![name.to_string()], Angles::Deg)
         }
     };
     Ok(COLOURS.into_iter().enumerate().map(scan).collect())
@@ -117,21 +112,12 @@ fn in_plane(thin: u32) -> Vec<Place> {
 fn whole(thin: u32) -> Vec<Place> {
     let middle = |bin: usize| {
         let (k, j, i) = (bin % BINS[2], bin / BINS[2] % BINS[1], bin / BINS[2] / BINS[1]);
-        let [(sin_h, cos_h), (sin_d, cos_d), (sin_p, cos_p)] =
-            [theta_h(i), j as f64 + 0.5, k as f64 + 0.5].map(sin_cos);
-        // Incidence is on one side of the half vector, scattering opposite to it; the half vector leans by theta_h.
-        let lean = |side: f64| {
-            let (x, y) = (side * sin_d * cos_p, side * sin_d * sin_p);
-            let (x, z) = (cos_h * x + sin_h * cos_d, cos_h * cos_d - sin_h * x);
-            let theta = atan2(sqrt(x * x + y * y), z).to_degrees();
-            (theta, atan2(y, x).to_degrees())
-        };
-        let ((theta_i, phi_i), (theta_s, phi_s)) = (lean(1.0), lean(-1.0));
+        let (theta_i, theta_s, delta_phi) = of_half_angles(theta_h(i), j as f64 + 0.5, k as f64 + 0.5);
         (theta_i < 90.0 && theta_s < 90.0).then_some(Place {
             bin,
             theta_i,
             theta_s,
-            delta_phi: Some(phi_s - phi_i),
+            delta_phi: Some(delta_phi),
         })
     };
     (0..COUNT).step_by(thin as usize).filter_map(middle).collect()
@@ -139,7 +125,10 @@ fn whole(thin: u32) -> Vec<Place> {
 
 #[cfg(test)]
 mod tests {
+    use libm::{atan2, sqrt};
+
     use super::*;
+    use crate::input::direction::sin_cos;
 
     /// A file whose value in each bin is `value` of theta_h, theta_d and phi_d, the middles in degrees; G has twice and B three times as much as R.
     fn file(value: impl Fn(f64, f64, f64) -> f64) -> Vec<u8> {

@@ -1,12 +1,13 @@
 //! Tabular BSDF of Zemax ("BSDF Data Interchange"): angles from the specular ray, blocks of numbers for each rotation and angle of incidence.
 
-use crate::error::{Error, shown};
+use super::grid;
+use super::words::Words;
+use crate::error::Error;
 use crate::input::direction;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{Places, RawScan, Row, Weight};
-use crate::input::rows::is_remark;
-use crate::input::units::{Angles, Quantity};
+use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::units::Angles;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -22,56 +23,6 @@ fn is(text: &str) -> bool {
     begins("AngleOfIncidence") && begins("ScatterRadial") && begins("DataBegin")
 }
 
-/// A word with its line.
-type Word<'a> = (u64, &'a str);
-
-/// The words of the file, without remarks, from here on.
-struct Words<'a>(std::vec::IntoIter<Word<'a>>);
-
-impl<'a> Words<'a> {
-    fn next(&mut self, wanted: &str) -> Result<Word<'a>, Error> {
-        self.0.next().ok_or_else(|| {
-            Error::new(format!("the file ends where {wanted} should follow")).help("is the file cut off?")
-        })
-    }
-
-    fn expect(&mut self, keyword: &str) -> Result<(), Error> {
-        match self.next(keyword)? {
-            (_, word) if word.eq_ignore_ascii_case(keyword) => Ok(()),
-            (line, word) => Err(Error::new(format!("'{}' stands where {keyword} should", shown(word)))
-                .at_line(line)
-                .help("keep the order of the keywords, and the counts of numbers that the header promises")),
-        }
-    }
-
-    fn number(&mut self, wanted: &str) -> Result<(u64, f64), Error> {
-        let (line, word) = self.next(wanted)?;
-        let number = word.parse().map_err(|_| {
-            Error::new(format!(
-                "'{}' is not a number, where {wanted} should stand",
-                shown(word)
-            ))
-            .at_line(line)
-            .help("do the counts in the header agree with the numbers?")
-        })?;
-        Ok((line, number))
-    }
-
-    /// A keyword, a count and as many numbers.
-    fn list(&mut self, keyword: &str) -> Result<Vec<f64>, Error> {
-        const MOST: f64 = 1e5;
-        self.expect(keyword)?;
-        let (line, count) = self.number("a count")?;
-        if !(1.0..=MOST).contains(&count) || count.fract() != 0.0 {
-            return Err(Error::new(format!("{keyword} has {count} angles"))
-                .at_line(line)
-                .help("give their number, from 1 on"));
-        }
-        let each = (0..count as usize).map(|_| Ok(self.number("an angle")?.1));
-        each.collect()
-    }
-}
-
 /// One scan, or one for each sample rotation and each of X, Y and Z.
 ///
 /// A value of 0 says that there was no measurement; that of the specular ray stands in each azimuth, and is taken once.
@@ -79,89 +30,80 @@ impl<'a> Words<'a> {
 /// # Errors
 /// A keyword or a number is missing, or the data are of transmission.
 fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
-    let lines = (1..).zip(text.lines()).filter(|(_, line)| !is_remark(line));
-    let words: Vec<Word> = lines
-        .flat_map(|(number, line)| line.split_whitespace().map(move |word| (number, word)))
-        .collect();
-    let mut words = Words(words.into_iter());
-    let mut setting = |keyword: &str, permitted: &[&'static str]| -> Result<&'static str, Error> {
-        words.expect(keyword)?;
-        let (line, word) = words.next("a setting")?;
-        let known = permitted.iter().find(|known| known.eq_ignore_ascii_case(word));
-        known.copied().ok_or_else(|| {
-            Error::new(format!("{keyword} is '{}'", shown(word)))
+    let mut words = Words::new(text);
+    setting(&mut words, "Source", &["Measured"])?;
+    setting(
+        &mut words,
+        "Symmetry",
+        &["PlaneSymmetrical", "ASymmetrical", "ASymmetrical4D"],
+    )?;
+    let content = setting(&mut words, "SpectralContent", &["Monochrome", "XYZ"])?;
+    let line = words.line();
+    if setting(&mut words, "ScatterType", &["BRDF", "BTDF"])? == "BTDF" {
+        return Err(
+            Error::new("ScatterType is 'BTDF': this holds transmission, and no reflection")
                 .at_line(line)
-                .help(format!("this reads {}", permitted.join(" or ")))
-        })
-    };
-    setting("Source", &["Measured"])?;
-    setting("Symmetry", &["PlaneSymmetrical", "ASymmetrical", "ASymmetrical4D"])?;
-    let content = setting("SpectralContent", &["Monochrome", "XYZ"])?;
-    setting("ScatterType", &["BRDF"])?;
-    let rotations = words.list("SampleRotation")?;
-    let incidences = words.list("AngleOfIncidence")?;
-    let azimuths = words.list("ScatterAzimuth")?;
-    let radials = words.list("ScatterRadial")?;
+                .help("measure the BRDF"),
+        );
+    }
+    let rotations = list(&mut words, "SampleRotation")?;
+    let incidences = list(&mut words, "AngleOfIncidence")?;
+    let azimuths = list(&mut words, "ScatterAzimuth")?;
+    let radials = list(&mut words, "ScatterRadial")?;
     let channels: &[&str] = match content {
         "XYZ" => &["TristimulusX", "TristimulusY", "TristimulusZ"],
         _ => &["Monochrome"],
     };
     let mut scans = Vec::new();
     for &channel in channels {
-        words.expect(channel)?;
-        words.expect("DataBegin")?;
+        words.keyword(channel)?;
+        words.keyword("DataBegin")?;
         for rotation in &rotations {
-            let mut scan = RawScan {
-                names: channel
-                    .strip_prefix("Tristimulus")
-                    .map(String::from)
-                    .into_iter()
-                    .collect(),
-                angles: Angles::Deg,
-                quantity: Quantity::Brdf,
-                places: Places::default(),
-                rows: Vec::new(),
-            };
+            let names = channel.strip_prefix("Tristimulus").map(String::from);
+            let mut scan = RawScan::new(names.into_iter().collect(), Angles::Deg);
             if rotations.len() > 1 {
                 scan.names.push(format!("rotation {rotation}"));
             }
             for &theta_i in &incidences {
-                words.expect("TIS")?;
+                words.keyword("TIS")?;
                 words.number("the TIS")?;
                 for (place, &azimuth) in azimuths.iter().enumerate() {
                     for &radial in &radials {
                         let (line, value) = words.number("a value")?;
                         let again = radial == 0.0 && place > 0;
-                        if value == 0.0 || again {
+                        if again {
                             continue;
                         }
-                        let (theta_s, delta_phi) = direction::angles(direction(theta_i, azimuth, radial));
-                        scan.rows.push(Row {
+                        let (theta_s, delta_phi) = direction::of_specular(theta_i, radial, azimuth);
+                        let row = Row {
                             theta_i,
                             theta_s,
                             delta_phi,
                             value,
                             weight: Weight::Unknown,
                             line,
-                        });
+                        };
+                        grid::add(&mut scan, row);
                     }
                 }
             }
             scans.push(scan);
         }
-        words.expect("DataEnd")?;
+        words.keyword("DataEnd")?;
     }
     Ok(scans)
 }
 
-/// The direction at `radial` from the specular ray; azimuth 0 leads from there to the normal.
-fn direction(theta_i: f64, azimuth: f64, radial: f64) -> [f64; 3] {
-    let [(sin_i, cos_i), (sin_a, cos_a), (sin_r, cos_r)] = [theta_i, azimuth, radial].map(direction::sin_cos);
-    [
-        sin_i * cos_r - cos_i * sin_r * cos_a,
-        sin_r * sin_a,
-        cos_i * cos_r + sin_i * sin_r * cos_a,
-    ]
+fn setting(words: &mut Words, keyword: &str, known: &[&'static str]) -> Result<&'static str, Error> {
+    words.keyword(keyword)?;
+    words.setting(keyword, known)
+}
+
+/// A keyword, a count and as many angles.
+fn list(words: &mut Words, keyword: &str) -> Result<Vec<f64>, Error> {
+    words.keyword(keyword)?;
+    let count = words.count("the number of angles")?;
+    words.numbers(count, "an angle")
 }
 
 #[cfg(test)]

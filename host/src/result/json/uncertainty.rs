@@ -1,11 +1,12 @@
 //! Uncertainty and derived quantities as parts of the JSON contract; what is infinite or not there is null.
 
-use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::uncertainty::Place;
 use serde::Serialize;
 
+use super::by_name::ByName;
 use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
+use crate::engine::Material;
 use crate::engine::uncertainty::Uncertainty;
 use crate::result::words::sentence;
 
@@ -24,28 +25,6 @@ pub struct Known {
     correlation: ByName<ByName<f64>>,
     on_bound: Vec<OnBound>,
     undetermined: Vec<Open>,
-}
-
-/// One for each parameter.
-#[derive(Serialize)]
-struct ByName<T> {
-    rho_d: T,
-    rho_s: T,
-    rho_v: T,
-    m: T,
-    n: T,
-    kappa: T,
-}
-
-fn by_name<T>([rho_d, rho_s, rho_v, m, n, kappa]: [T; 6]) -> ByName<T> {
-    ByName {
-        rho_d,
-        rho_s,
-        rho_v,
-        m,
-        n,
-        kappa,
-    }
 }
 
 #[derive(Serialize)]
@@ -87,17 +66,18 @@ fn number(Value { value, stderr }: Value) -> Number {
 }
 
 /// The uncertainty of one fit.
-pub fn known(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> Known {
-    let on_bound = (0..NAMES.len()).filter_map(|k| {
+pub fn known(material: &Material, known: &Uncertainty, derived: &[Derived]) -> Known {
+    let model = material.model;
+    let on_bound = (0..model.parameters.len()).filter_map(|k| {
         let bound = match known.places[k]? {
             Place::Lower => "lower",
             Place::Upper => "upper",
             _ => return None,
         };
-        let (parameter, push) = (NAMES[k], known.push[k]);
+        let (parameter, push) = (model.parameters[k].name, known.push[k]);
         Some(OnBound { parameter, bound, push })
     });
-    let open = undetermined(params, known, derived).into_iter().map(|what| Open {
+    let open = undetermined(material, known, derived).into_iter().map(|what| Open {
         sentence: sentence(&what),
         through: what.through.iter().map(|&(product, _)| product).collect(),
         parameters: what.parameters,
@@ -107,14 +87,12 @@ pub fn known(params: &Params<f64>, known: &Uncertainty, derived: &[Derived]) -> 
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
         condition: known.condition,
-        stderr: by_name(std::array::from_fn(|k| {
-            has(k, Place::Inside).then_some(known.stderr[k])
-        })),
-        stderr_without_bounds: by_name(std::array::from_fn(|k| {
+        stderr: ByName::new(model, |k| has(k, Place::Inside).then_some(known.stderr[k])),
+        stderr_without_bounds: ByName::new(model, |k| {
             let free = has(k, Place::Inside) || has(k, Place::Lower) || has(k, Place::Upper);
             free.then_some(known.stderr_lifted[k])
-        })),
-        correlation: by_name(known.correlation.map(by_name)),
+        }),
+        correlation: ByName::new(model, |i| ByName::new(model, |j| known.correlation[i][j])),
         on_bound: on_bound.collect(),
         undetermined: open.collect(),
     }

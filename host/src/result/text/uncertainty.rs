@@ -1,10 +1,10 @@
 //! Uncertainty and derived quantities for the page of a fit.
 
-use brdfit_core::brdf::{NAMES, Params};
 use brdfit_core::uncertainty::Place;
 
 use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
+use crate::engine::Material;
 use crate::engine::uncertainty::Uncertainty;
 use crate::number::{percent, short};
 use crate::result::words::{sentence, shown};
@@ -28,7 +28,13 @@ pub fn remark(index: usize, known: &Uncertainty) -> String {
 /// Lines on what is known, what is not, and what follows.
 ///
 /// With weights, the residual is in their unit and no part of f.
-pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived], weighted: bool) -> Vec<String> {
+pub fn lines(material: &Material, known: &Uncertainty, derived: &[Derived], weighted: bool) -> Vec<String> {
+    let names: Vec<&str> = material
+        .model
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name)
+        .collect();
     let mut lines = Vec::new();
     if known.degrees_of_freedom == 0 {
         lines.push("  known      no standard errors: as many parameters as samples".into());
@@ -44,16 +50,16 @@ pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived], wei
         known.degrees_of_freedom,
         short(known.condition)
     ));
-    for what in undetermined(params, known, derived) {
+    for what in undetermined(material, known, derived) {
         lines.push(format!("    {}", sentence(&what)));
     }
-    for index in 0..NAMES.len() {
+    for index in 0..names.len() {
         let (side, end) = match known.places[index] {
             Some(Place::Lower) => ("below", "lower"),
             Some(Place::Upper) => ("above", "upper"),
             _ => continue,
         };
-        let (name, push) = (NAMES[index], known.push[index].abs());
+        let (name, push) = (names[index], known.push[index].abs());
         lines.push(if push < 0.05 {
             format!("    {name} is on its {end} bound, where the data want it")
         } else {
@@ -64,7 +70,7 @@ pub fn lines(params: &Params<f64>, known: &Uncertainty, derived: &[Derived], wei
     let pairs = inside.iter().flat_map(|&i| inside.iter().map(move |&j| (i, j)));
     let strong: Vec<String> = pairs
         .filter(|&(i, j)| i < j && known.correlation[i][j].abs() >= STRONG)
-        .map(|(i, j)| format!("{} and {} {:.3}", NAMES[i], NAMES[j], known.correlation[i][j]))
+        .map(|(i, j)| format!("{} and {} {:.3}", names[i], names[j], known.correlation[i][j]))
         .collect();
     if !strong.is_empty() {
         lines.push(format!("    correlated: {}", strong.join(", ")));

@@ -1,0 +1,60 @@
+//! A model with values: something that has a BRDF.
+
+use brdfit_core::brdf::Params;
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
+
+use crate::{Model, Values};
+
+/// A model with the values of its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// The model.
+    pub model: &'static Model,
+    /// Its parameters.
+    pub values: Values,
+}
+
+impl Material {
+    /// Of the paper's model, Eq. 14, in the order of [`brdfit_core::brdf::NAMES`].
+    pub fn paper(values: [f64; 6]) -> Self {
+        Material {
+            model: Model::paper(),
+            values: values.into(),
+        }
+    }
+
+    /// The parameters of Eq. 14; `None` of another model.
+    pub fn eq_14(&self) -> Option<Params<f64>> {
+        let values = <[f64; 6]>::try_from(&self.values[..]).ok()?;
+        self.model.is_paper().then(|| Params::from_array(values))
+    }
+
+    /// The value of the parameter of this name, if the model has it.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.model.value(&self.values, name)
+    }
+
+    /// The same with another value of a parameter; a name that the model has not changes nothing.
+    pub fn with(mut self, name: &str, value: f64) -> Self {
+        if let Some(place) = self.model.place(name) {
+            self.values[place] = value;
+        }
+        self
+    }
+
+    /// ln f in the directions of `sample`, f in sr^-1; none beyond the horizon.
+    pub fn ln_f(&self, sample: &Sample<f64>) -> Option<f64> {
+        self.model.ln_f(&self.values, sample)
+    }
+
+    /// The same, and its derivatives by the parameters.
+    pub fn gradient(&self, sample: &Sample<f64>) -> Option<(f64, Values)> {
+        self.model.gradient(&self.values, sample)
+    }
+
+    /// Model less measurement in ln f, times the sample's weight; none beyond the horizon.
+    pub fn residual(&self, sample: &Sample<f64>) -> Option<f64> {
+        Some(sample.weight * (self.ln_f(sample)? - Real::ln(sample.brdf)))
+    }
+}

@@ -1,0 +1,93 @@
+//! Excel workbooks (`.xlsx`): each sheet with numbers is read as the text that it would be as CSV.
+//!
+//! Only with the feature `xlsx`; without it they are refused by name.
+
+use crate::error::Error;
+use crate::input::format::{Format, Reader};
+use crate::input::options::ReadOptions;
+use crate::input::raw::RawScan;
+
+/// This format.
+pub const FORMAT: Format = Format {
+    name: "xlsx",
+    title: "Excel workbook",
+    about: "Excel workbook, .xlsx (with the feature xlsx)",
+    reader: Reader::Bytes { is, read },
+};
+
+/// True of a ZIP archive with the parts of a workbook.
+fn is(file: &[u8]) -> bool {
+    file.starts_with(b"PK\x03\x04") && memchr::memmem::find(file, b"xl/workbook.xml").is_some()
+}
+
+#[cfg(not(feature = "xlsx"))]
+fn read(_: &[u8], _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+    Err(Error::new("this is an Excel workbook, which this build does not read")
+        .help("save the sheet as CSV, or build with --features xlsx"))
+}
+
+/// The scans of each sheet that has any number; the name of the sheet tells them apart if there are several.
+#[cfg(feature = "xlsx")]
+fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+    use calamine::{Reader as _, Xlsx};
+
+    let fault = |what: String| Error::new(format!("as Excel workbook: {what}")).help("save the sheet as CSV");
+    let mut workbook = Xlsx::new(std::io::Cursor::new(file)).map_err(|error| fault(error.to_string()))?;
+    let mut sheets = Vec::new();
+    for name in workbook.sheet_names() {
+        let range = workbook
+            .worksheet_range(&name)
+            .map_err(|error| fault(error.to_string()))?;
+        if let Some(text) = text(&range) {
+            sheets.push((name, text));
+        }
+    }
+    let several = sheets.len() > 1;
+    let mut scans = Vec::new();
+    for (name, text) in sheets {
+        let (_, found) = super::of_text(&text, None, options).map_err(|error| {
+            let what = if several {
+                format!("sheet {}: {}", crate::error::shown(&name), error.what)
+            } else {
+                error.what
+            };
+            Error { what, ..error }
+        })?;
+        scans.extend(found.into_iter().map(|mut scan| {
+            scan.names.splice(0..0, several.then(|| name.clone()));
+            scan
+        }));
+    }
+    if scans.is_empty() {
+        return Err(fault("there is no sheet with numbers".into()));
+    }
+    Ok(scans)
+}
+
+/// The cells of a sheet with tabs between them, each row on its line of the sheet; none if no cell is a number.
+#[cfg(feature = "xlsx")]
+fn text(range: &calamine::Range<calamine::Data>) -> Option<String> {
+    use calamine::Data;
+
+    let is_number = |cell: &Data| match cell {
+        Data::Float(_) | Data::Int(_) => true,
+        Data::String(text) => text.trim().parse::<f64>().is_ok(),
+        _ => false,
+    };
+    if !range.rows().flatten().any(is_number) {
+        return None;
+    }
+    let cell = |cell: &Data| match cell {
+        Data::Empty => String::new(),
+        Data::Float(number) => number.to_string(),
+        Data::Error(_) => "NaN".to_string(),
+        other => other.to_string().replace(['\t', '\n', '\r', '"'], " "),
+    };
+    let (first, _) = range.start()?;
+    let mut text = "\n".repeat(first as usize);
+    for row in range.rows() {
+        text += &row.iter().map(cell).collect::<Vec<_>>().join("\t");
+        text.push('\n');
+    }
+    Some(text)
+}

@@ -1,0 +1,26 @@
+//! A value for each parameter, by name.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use crate::engine::Model;
+
+/// One value for each parameter of a model, in their order.
+pub struct ByName<T>(Vec<(&'static str, T)>);
+
+impl<T> ByName<T> {
+    /// The function of each place.
+    pub fn new(model: &Model, of: impl Fn(usize) -> T) -> Self {
+        let each = model.parameters.iter().enumerate();
+        ByName(each.map(|(place, parameter)| (parameter.name, of(place))).collect())
+    }
+}
+
+impl<T: Serialize> Serialize for ByName<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}

@@ -56,6 +56,12 @@ pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2:
     peak
 }
 
+/// F at the peak of each lobe with one index (n, kappa^2), over that with another; 1 where the other has none.
+pub(crate) fn ratio<R: Real>(from: [R; 2], to: [R; 2], peaks: Pack<R, 2>) -> Pack<R, 2> {
+    let [from, to] = [from, to].map(|[n, kappa2]| Index::new(n, kappa2).reflect::<2, false>(peaks).f);
+    from.zip(to, |from, to| if to > R::TINY { from / to } else { R::ONE })
+}
+
 /// What is to be added to n + d n and kappa^2 + d kappa^2 so that Re 1/(n - i kappa) and (Im 1/(n - i kappa))^2 change by what they do to first order; nothing where that would make |n - i kappa| more than four times what it is.
 ///
 /// All of second order, and written so that nothing cancels.

@@ -42,6 +42,18 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     ) -> Candidate<R, P> {
         let mut x = bounds.lower;
         let fades = propose::shapes(&mut x, &M::PARAMETERS, bounds, (seed, i), &self.seen, region);
+        if let Region::Index(like) = region {
+            // Where the model misfits, least squares of f would take the lobes away.
+            M::keep_heights(&self.seen, like, &mut x);
+            if fades {
+                M::fade(&mut x, bounds);
+            }
+            return Candidate {
+                x: bounds.clamp(x),
+                rank: R::ZERO,
+                passes: 0,
+            };
+        }
         let mut passes = 0;
         loop {
             let rank = self.set_weights(&mut x, bounds);

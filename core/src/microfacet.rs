@@ -2,8 +2,8 @@
 
 use core::marker::PhantomData;
 
-use crate::bend::{bend, peak};
-use crate::brdf::{Brdf, EVERY, Lift, PAIR, SECOND, WEIGHT, has, lobes, slot};
+use crate::bend::{bend, peak, ratio};
+use crate::brdf::{Brdf, EVERY, Lift, PAIR, SECOND, WEIGHT, get, has, lobes, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lm::Bounds;
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
@@ -153,6 +153,20 @@ where
         }
     }
 
+    fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        if let Some(rho_d) = place(0) {
+            x[rho_d] = like[rho_d];
+        }
+        let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
+        let ratio = ratio(index(like), index(x), seen.peaks);
+        for (k, pair) in WEIGHT.map(place).into_iter().zip(PAIR) {
+            if let Some(k) = k {
+                x[k] = like[k] * ratio.0[pair % 2];
+            }
+        }
+    }
+
     /// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
     fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
         let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
@@ -160,14 +174,19 @@ where
         for k in WEIGHT.into_iter().filter_map(place) {
             part = part.max(x[k] / bounds.upper[k]);
         }
-        if !(part > R::ZERO && part < R::ONE) {
+        if !(part > R::ZERO) {
             return false;
         }
+        // Not so far up that F is no longer in proportion.
+        let part = part.min(R::of(10.0));
         if let Some(n) = place(4) {
             x[n] = R::ONE + (x[n] - R::ONE) * part.sqrt();
         }
         if let Some(kappa2) = place(5) {
             x[kappa2] *= part;
+        }
+        for k in WEIGHT.into_iter().filter_map(place) {
+            x[k] = (x[k] / part).min(bounds.upper[k]);
         }
         true
     }

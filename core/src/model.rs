@@ -188,7 +188,17 @@ pub trait Model<R: Real, const P: usize, const C: usize>: Copy {
         Seen::nothing()
     }
 
-    /// Moves a point that has the best weights to where the model all but vanishes at weights of 1, and its weights up to their bounds, so that f stays; false if it does not.
+    /// Sets the weights of a point so that its lobes are as high as at another one that differs in the index.
+    fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
+        let _ = seen;
+        for (k, parameter) in Self::PARAMETERS.iter().enumerate() {
+            if parameter.is_weight() {
+                x[k] = like[k];
+            }
+        }
+    }
+
+    /// Moves a point that has good weights to where the model all but vanishes at weights of 1, and its weights up to their bounds, so that f stays; false if it does not.
     ///
     /// Along this way the cost hardly changes, so that a fit takes long for it.
     fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {

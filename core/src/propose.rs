@@ -6,23 +6,28 @@ use crate::real::Real;
 use crate::search::{BANDS, Region};
 use crate::start;
 
-/// (n, kappa) of the first variations of a point: dielectrics, metals, mirrors, and F that vanishes. A minimum has neighbours in these regimes.
+/// (n, kappa) of the first variations of a point, in groups: a minimum has neighbours in these regimes.
 pub(crate) const INDICES: [(f64, f64); 14] = [
+    // F hardly depends on the angle.
     (100.0, 0.0),
     (100.0, 100.0),
     (1.0, 100.0),
     (1.0, 15.0),
-    (1.0, 5.0),
-    (1.0, 2.0),
-    (1.0, 0.5),
+    (10.0, 0.0),
+    // Dielectrics.
     FADING,
     (1.2, 0.0),
     (2.0, 0.0),
     (3.5, 0.0),
-    (10.0, 0.0),
+    // Metals.
+    (1.0, 5.0),
+    (1.0, 2.0),
+    (1.0, 0.5),
     (1.5, 1.5),
     (4.0, 4.0),
 ];
+/// Where these groups end.
+pub(crate) const GROUPS: [u32; 3] = [5, 9, INDICES.len() as u32];
 /// Stands for an index that [`crate::model::Model::fade`] moves.
 const FADING: (f64, f64) = (1.0, 0.0);
 /// Where that begins: kappa^2, or n where kappa cannot be so large.

@@ -14,6 +14,7 @@ use heapless::Vec;
 
 use crate::lm::{self, Bounds, Fit, Options, Problem};
 use crate::minima::{self, Minima};
+use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
 use crate::start;
 
@@ -35,15 +36,17 @@ const CYCLES: u32 = 3;
 /// How many of a round's candidates are tried by cost, and for how many of them a fit begins.
 const TRIED: usize = 8;
 const BEGUN: usize = 3;
-/// Candidates with the slopes of the best, how many of them are tried by cost, and for how many a fit begins.
-const VARIATIONS: u32 = crate::propose::INDICES.len() as u32;
-const VARIATIONS_BEGUN: usize = 4;
-/// Candidates with other slopes than the best.
+/// Candidates with the slopes of the best, and for how many of a group of them a fit begins.
+const VARIATIONS: u32 = INDICES.len() as u32;
+const GROUP_BEGUN: usize = 2;
+/// Candidates with other slopes than the best, and for how many a fit begins.
 const SLOPES: u32 = 16;
+const SLOPES_BEGUN: usize = 4;
 /// Variations are made again of a better end that they lead to, so often at most.
 const LOOPS: u32 = 3;
-/// Passes of a fit before it is decided which of a round go on.
+/// Passes of a fit before it is decided which of a round go on; a variation begins nearer to where it ends.
 const SHORT: u32 = 4;
+const VARIATION_SHORT: u32 = 3;
 /// A fit goes on that is within this factor of the best cost.
 const NEAR: f64 = 1.05;
 /// A fit is given up that is beyond this factor of the best cost after so many passes.
@@ -71,7 +74,7 @@ pub struct Candidate<R, const P: usize> {
     pub x: [R; P],
     /// The lower, the more promising: a sum of squares that came with the start for nothing.
     pub rank: R,
-    /// Passes without derivatives that it took.
+    /// Passes without derivatives that it took, if any.
     pub passes: u32,
 }
 
@@ -90,7 +93,7 @@ pub enum Region<'a, R, const P: usize> {
 
 /// A problem that can propose good starts.
 pub trait Scene<R, const P: usize>: Problem<R, P> {
-    /// Candidate `i` of the sequence of `seed` in a region; a pass or two as cheap as [`Problem::cost`].
+    /// Candidate `i` of the sequence of `seed` in a region; at most two passes as cheap as [`Problem::cost`].
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P>;
 
     /// A point with its weights scaled so that the mean residual is 0, as far as the bounds let them, and the cost there; one pass as cheap as [`Problem::cost`].
@@ -183,6 +186,18 @@ pub fn search<R: Real, const P: usize>(
     candidates: u32,
     options: &Options<R>,
 ) -> Found<R, P> {
+    search_from(scene, bounds, seed, candidates, &[], options)
+}
+
+/// The same from points that are known too: it ends no higher than the nearest points to them within the bounds.
+pub fn search_from<R: Real, const P: usize>(
+    scene: &(impl Scene<R, P> + ?Sized),
+    bounds: &Bounds<R, P>,
+    seed: u64,
+    candidates: u32,
+    known: &[[R; P]],
+    options: &Options<R>,
+) -> Found<R, P> {
     let rough = Options {
         cost_tolerance: options.cost_tolerance.max(R::of(ROUGH)),
         max_passes: options.max_passes.min(ROUGH_PASSES),
@@ -200,6 +215,11 @@ pub fn search<R: Real, const P: usize>(
         minima: Minima::default(),
         evaluations: Evaluations::default(),
     };
+    for (&x, start) in known.iter().zip(u64::from(candidates)..) {
+        let mut fit = Fit::begin(scene, bounds, x, &rough);
+        search.converge(&mut fit, start);
+        search.evaluations.linearize += fit.passes;
+    }
     let mut unsettled = false;
     let mut made = 0;
     while made < candidates.max(1) {
@@ -227,10 +247,14 @@ pub fn search<R: Real, const P: usize>(
     unsettled |= candidates > CANDIDATES;
     for again in 0..LOOPS {
         let Some(before) = search.best else { break };
-        let indices = |count: u32| again * count..(again + 1) * count;
-        search.round(indices(VARIATIONS), Region::Index(&before.x), VARIATIONS_BEGUN);
+        let mut start = again * VARIATIONS;
+        for group in GROUPS {
+            let end = again * VARIATIONS + group;
+            search.round(start..end, Region::Index(&before.x), GROUP_BEGUN);
+            start = end;
+        }
         if unsettled {
-            search.round(indices(SLOPES), Region::Slopes(&before.x), VARIATIONS_BEGUN);
+            search.round(again * SLOPES..(again + 1) * SLOPES, Region::Slopes(&before.x), SLOPES_BEGUN);
         }
         if !search.best.is_some_and(|best| best.at.cost < before.at.cost * R::of(1.0 - 1e-6)) {
             break;
@@ -290,22 +314,24 @@ impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
                 minima::insert(&mut ranked, TRIED, (candidate.rank, i, candidate.x), |ranked| ranked.0);
             }
         }
-        let mut levelled: Vec<(R, u32, [R; P]), VARIATIONS_BEGUN> = Vec::new();
+        let mut levelled: Vec<(R, u32, [R; P]), SLOPES_BEGUN> = Vec::new();
         for &(_, i, x) in &ranked {
             self.evaluations.cost += 1;
             let (x, cost) = self.scene.level(self.bounds, &x);
             minima::insert(&mut levelled, begun, (cost, i, x), |levelled| levelled.0);
         }
-        let mut fits: Vec<(Fit<R, P>, u32), VARIATIONS_BEGUN> = Vec::new();
+        let mut fits: Vec<(Fit<R, P>, u32), SLOPES_BEGUN> = Vec::new();
+        let varies = matches!(region, Region::Index(_));
+        let short = if varies { VARIATION_SHORT } else { SHORT };
         for &(_, i, x) in &levelled {
             let mut fit = Fit::begin(self.scene, self.bounds, x, self.options);
-            fit.run(self.scene, self.bounds, self.options, SHORT);
+            fit.run(self.scene, self.bounds, self.options, short);
             let _ = fits.push((fit, i));
             minima::sift(&mut fits, |(fit, _)| fit.at.cost);
         }
         for (place, (fit, i)) in fits.iter_mut().enumerate() {
             self.note_rival(fit);
-            if place == 0 || self.is_near(fit.at.cost, NEAR) {
+            if place == 0 && !varies || self.is_near(fit.at.cost, NEAR) {
                 self.converge(fit, u64::from(*i));
             }
             self.evaluations.linearize += fit.passes;

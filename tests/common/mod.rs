@@ -9,6 +9,7 @@ pub mod dual;
 pub mod hard_scenes;
 pub mod literal;
 pub mod mgh_problems;
+pub mod missed;
 pub mod nist_models;
 pub mod program;
 pub mod random_scenes;

@@ -6,7 +6,7 @@ use brdfit_core::real::Real;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::engine::robust;
-use crate::engine::{self, FitError, FitOptions, Outcome, Precision};
+use crate::engine::{self, FitError, FitOptions, Outcome, Precision, Values};
 
 /// The sets in order of size, each with the one that it is tested against.
 pub const SETS: [(u8, Option<u8>); 5] = [
@@ -63,13 +63,15 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<(FitOptions,
     let samples = &samples[..];
     let mut candidates: Vec<Candidate> = Vec::new();
     let mut best: Option<(FitOptions, Outcome, f64)> = None;
+    // A richer set begins where the poorer ones ended, and so never costs more.
+    let mut known: Vec<Values> = Vec::new();
     for (terms, smaller) in SETS.into_iter().filter(|&(terms, _)| allowed(terms, options)) {
         let options = FitOptions {
             terms,
             robust: false,
             ..*options
         };
-        let outcome = match engine::fit(samples, &options) {
+        let outcome = match engine::fit_from(samples, &options, &known) {
             Ok(outcome) => outcome,
             // The smallest set tells what is wrong with the scan; a larger one that needs more samples is no candidate.
             Err(FitError::TooFew(..)) if best.is_some() => continue,
@@ -78,6 +80,7 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<(FitOptions,
         let smaller = candidates.iter().find(|other| Some(other.terms) == smaller).copied();
         let candidate = judge(samples, &options, &outcome, smaller);
         candidates.push(candidate);
+        known.push(outcome.params);
         if best.as_ref().is_none_or(|(.., bic)| candidate.bic < *bic) {
             best = Some((options, outcome, candidate.bic));
         }

@@ -1,13 +1,15 @@
 //! `brdfit compare`: which model a scan needs.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use clap::Args;
+use rayon::prelude::*;
 use serde_json::json;
 
 use crate::analysis::choose::{Criteria, criteria};
 use crate::engine::models::MODELS;
-use crate::engine::{self, FitOptions, Model, Outcome};
+use crate::engine::{self, FitError, FitOptions, Model, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::four;
@@ -76,24 +78,33 @@ struct Fitted {
 }
 
 /// Fits each model, on all threads.
+///
+/// Models with more parameters begin where those with fewer ended: one that contains another never ends above it.
 fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Fitted>, Error> {
-    use rayon::prelude::*;
     let samples = &measurement.samples;
-    let fits: Vec<_> = models
-        .par_iter()
-        .map(|model| {
+    let size = |model: &Model| model.parameters.len();
+    let sizes: BTreeSet<usize> = models.iter().map(|model| size(model)).collect();
+    let mut fits: Vec<Fitted> = Vec::new();
+    for one in sizes {
+        let stage: Vec<&&Model> = models.iter().filter(|model| size(model) == one).collect();
+        let fit = |model: &&&'static Model| {
             let options = FitOptions {
                 seed,
                 ..FitOptions::of(model)
             };
-            let outcome = engine::fit(samples, &options)?;
+            let smaller = fits.iter().map(|fit| &fit.outcome);
+            let known: Vec<Values> = smaller
+                .map(|other| model.translated(other.model, &other.params))
+                .collect();
+            let outcome = engine::fit_from(samples, &options, &known)?;
             let criteria = criteria(samples, &options, outcome.cost);
             Ok(Fitted { outcome, criteria })
-        })
-        .collect();
-    let each = fits.into_iter();
-    each.map(|fit| fit.map_err(|error| input::explain(measurement, error)))
-        .collect()
+        };
+        let found: Result<Vec<Fitted>, FitError> = stage.par_iter().map(fit).collect();
+        fits.extend(found.map_err(|error| input::explain(measurement, error))?);
+    }
+    fits.sort_by_key(|fit| models.iter().position(|model| *model == fit.outcome.model));
+    Ok(fits)
 }
 
 fn least_aicc(fits: &[Fitted]) -> f64 {

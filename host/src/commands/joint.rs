@@ -53,7 +53,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let pool = arguments.search.pool()?;
     let fitted = pool
         .install(|| fit(&samples, &shared, &options))
-        .map_err(|(place, error)| input::explain(&measurements[place], error))?;
+        .map_err(|(place, error)| match measurements.get(place) {
+            Some(measurement) => input::explain(measurement, error),
+            None => Error::new(format!("all scans together: {error}")).help("share more parameters, or --fix some"),
+        })?;
     let text = match arguments.output.format {
         Format::Text => text(&options, &measurements, &fitted),
         Format::Json => json(&options, &measurements, &fitted),
@@ -101,7 +104,7 @@ fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
         rms(fitted.cost),
         rms(fitted.separate)
     ));
-    lines.push("  ± is one standard error; none where a parameter is on a bound or undetermined.".to_string());
+    lines.push("  ± is one standard error; none where a parameter is on a bound, or undetermined: its error is larger than itself.".to_string());
     lines.join("\n") + "\n"
 }
 

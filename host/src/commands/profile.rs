@@ -7,11 +7,10 @@ mod text;
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose;
-use crate::analysis::profile::{Profile, profile};
+use crate::analysis::profile::{Profiles, profiles};
 use crate::engine::{FitError, FitOptions, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
@@ -71,15 +70,18 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),
         };
-        let each = parameters.par_iter();
         let calibrated = arguments.calibrate.unwrap_or(0);
-        let profiles = each.map(|&index| profile(samples, &options, &outcome, index, calibrated));
-        let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
-        let copies = bootstrap(samples, &options, &outcome, arguments.bootstrap.unwrap_or(0))?;
-        Ok(Ok((outcome, profiles, copies)))
+        let found = profiles(samples, &options, outcome, &parameters, calibrated)?;
+        let copies = bootstrap(samples, &options, &found.outcome, arguments.bootstrap.unwrap_or(0))?;
+        Ok(Ok((found, copies)))
     });
-    let (outcome, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let (found, copies) = found.map_err(|error| input::explain(&measurement, error))??;
     let fail = |what: &str| Error::new(what).in_file(measurement.label());
+    let Profiles {
+        outcome,
+        improved_from,
+        list: profiles,
+    } = found;
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
     }
@@ -91,6 +93,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let findings = Findings {
         name: measurement.label(),
         outcome,
+        improved_from,
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),

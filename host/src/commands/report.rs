@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
              }| {
                 let section = Section::new(measurement, source, &options)?;
                 if let Some(stored) = stored {
-                    results::agree(&section.label, &section.report.outcome.material(), stored)?;
+                    results::agree(&section.label, &section.searched, stored)?;
                 }
                 Ok(section)
             },

@@ -20,8 +20,10 @@ pub struct Section {
     pub label: String,
     /// Its file.
     pub source: Source,
-    /// The fit.
+    /// The fit, from the best start of the survey where the search had not found it.
     pub report: FittedScan,
+    /// What the search itself had found.
+    pub searched: Material,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
     pub survey: Outcome,
     /// The number of its starts.
@@ -46,7 +48,8 @@ impl Section {
     /// # Errors
     /// The scan can not be fitted.
     pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
-        let report = fit(measurement, options)?;
+        let mut report = fit(measurement, options)?;
+        let searched = report.outcome.material();
         let samples = robust::kept(&measurement.samples, &report.outcome);
         let paper = FitOptions {
             method: Method::Paper,
@@ -57,26 +60,27 @@ impl Section {
         let (survey, starts) = if report.options.method == Method::Paper {
             (report.outcome.clone(), report.options.starts())
         } else {
-            let survey = engine::fit(&samples, &paper);
-            (
-                survey.map_err(|error| input::explain(measurement, error))?,
-                paper.starts(),
-            )
+            let explain = |error| input::explain(measurement, error);
+            let survey = engine::fit(&samples, &paper).map_err(explain)?;
+            if survey.cost < report.outcome.cost {
+                report = report.improved(measurement, &samples, survey.params).map_err(explain)?;
+            }
+            (survey, paper.starts())
         };
         Ok(Section {
             label: measurement.label(),
             source: source.clone(),
             figures: figures(&samples, &report, &survey.minima, starts),
             report,
+            searched,
             survey,
             starts,
         })
     }
 
-    /// Do the starts of the survey end lower than the fit, by more than rounding?
+    /// Did a start of the survey end lower than the search, by more than rounding?
     pub fn missed(&self) -> bool {
-        let least = self.survey.minima.first().map_or(f64::INFINITY, |minimum| minimum.mse2);
-        least < self.report.outcome.mse2 * (1.0 - 1e-6)
+        self.report.improved_from.is_some_and(|before| self.report.outcome.cost < before * (1.0 - 1e-6))
     }
 }
 

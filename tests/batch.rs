@@ -75,10 +75,7 @@ fn results_are_those_of_single_fits_in_order() {
     };
     let serial = fit("1");
     assert_eq!(serial, fit("2"));
-    assert_eq!(
-        serial,
-        cells(&table, &["theta_i_deg", "mse2_high", "improvement_potential", "error"])
-    );
+    assert_eq!(serial, cells(&table, &["error"]));
     let json = out.with_extension("json");
     let objects: Value = serde_json::from_str(&batch(&folder, &json, &["--threads", "1"])).unwrap();
     for (object, row) in objects.as_array().unwrap().iter().zip(&serial[1..]) {

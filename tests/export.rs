@@ -1,5 +1,6 @@
 //! `brdfit export`: what each form says is the model, to the digits that it has.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -65,6 +66,63 @@ fn bird_has_the_model_and_its_brdf() {
         assert!(parameter.get("uncertainty").is_none());
         assert!(["description", "unit"].iter().all(|key| parameter[key].is_string()));
     }
+}
+
+#[test]
+fn openmaterial_reads_back_and_has_what_its_schema_requires() {
+    let export = |more: &[&str]| {
+        let all = [
+            &["export", "--params", LIST, "--to", "openmaterial", "--name", "paint"],
+            more,
+        ]
+        .concat();
+        brdfit(&all)
+    };
+    let ran = export(&["--wavelength", "905"]);
+    assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
+    check(off(&ran.output, 15_000), tolerance::OPENMATERIAL_ROUND_TRIP);
+    let scan = input::parse("x", ran.output.as_bytes(), &ReadOptions::default()).unwrap();
+    assert_eq!(
+        (scan[0].name.as_deref(), scan[0].read_as.format.name),
+        (Some("905 nm"), "openmaterial")
+    );
+    let file: Value = serde_json::from_str(&ran.output).unwrap();
+    let metadata = &file["metadata"];
+    for key in [
+        "name",
+        "uuid",
+        "materialVersion",
+        "openMaterial3dVersion",
+        "license",
+        "sources",
+    ] {
+        assert!(metadata[key].is_string(), "{key}");
+    }
+    assert!(["copyrights", "authors"].iter().all(|key| metadata[key][0].is_string()));
+    let lengths: Vec<usize> = metadata["uuid"].as_str().unwrap().split('-').map(str::len).collect();
+    assert_eq!(lengths, [8, 4, 4, 4, 12]);
+    let rows: Vec<Vec<f64>> = serde_json::from_value(file["brdf"]["lookupTable"].clone()).unwrap();
+    assert!(rows.is_sorted(), "the schema sorts the table by its columns");
+    let largest = [17.16e-3, FRAC_PI_2, FRAC_PI_2, TAU, f64::MAX];
+    assert!(
+        rows.iter()
+            .flat_map(|row| row.iter().zip(largest))
+            .all(|(x, most)| (0.0..=most).contains(x))
+    );
+    // The same material has the same identifier, another one another.
+    let uuid = |more: &[&str]| {
+        let file: Value = serde_json::from_str(&export(more).output).unwrap();
+        file["metadata"]["uuid"].as_str().map(String::from)
+    };
+    assert_eq!(uuid(&["--wavelength", "905"]).as_deref(), metadata["uuid"].as_str());
+    assert_ne!(uuid(&["--wavelength", "1550"]).as_deref(), metadata["uuid"].as_str());
+    let without = export(&[]);
+    assert!(
+        without.code == 2 && without.errors.contains("give --wavelength"),
+        "{}",
+        without.errors
+    );
+    assert_eq!(export(&["--wavelength", "0"]).code, 2);
 }
 
 #[test]

@@ -36,6 +36,7 @@ fn json_keeps_its_contract() {
         "seed",
         "starts",
         "terms",
+        "model",
         "mse2",
         "rms_ln",
         "parameters",
@@ -149,6 +150,41 @@ fn text_and_csv_tell_the_same() {
     let rho_d = rows[0].iter().position(|&name| name == "rho_d").unwrap();
     assert!(tolerance::IDEAL_PRINTED.admits((rows[1][rho_d].parse::<f64>().unwrap() / 0.1 - 1.0).abs()));
     assert!(succeed(&["fit", &file, "--format", "csv", "--minima"]).lines().count() >= 2);
+}
+
+#[test]
+fn csv_and_json_have_the_same_values() {
+    let (folder, _) = scene();
+    let row = |k: i32| {
+        let brdf = 0.1 + 0.001 * f64::from(k * k);
+        format!("30,{},{brdf},{}\n", 10 * k, 0.1 * brdf)
+    };
+    let scan = "theta_i,theta_s,brdf,sigma\n".to_string() + &(-8..=8).map(row).collect::<String>();
+    let file = write(&folder, "weighted.csv", scan);
+    let object = json(&succeed(&["fit", &file, "--robust", "--format", "json"]));
+    let table = succeed(&["fit", &file, "--robust", "--format", "csv"]);
+    let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let (head, row) = (rows.next().unwrap(), rows.next().unwrap());
+    let mut compared = Vec::new();
+    for (name, cell) in head.into_iter().zip(row) {
+        if let Some(parameter) = name.strip_prefix("stderr_") {
+            let stderr = &object["uncertainty"]["stderr"][parameter];
+            assert_eq!(cell.parse().ok(), stderr.as_f64(), "{name}");
+        }
+        let value = [&object, &object["parameters"]]
+            .into_iter()
+            .find_map(|members| members.get(name));
+        match value {
+            Some(serde_json::Value::Number(number)) if name != "elapsed_s" => {
+                assert_eq!(cell.parse().ok(), number.as_f64(), "{name}");
+            }
+            Some(serde_json::Value::String(text)) => assert_eq!(cell, text, "{name}"),
+            _ => continue,
+        }
+        compared.push(name);
+    }
+    let both = "file samples method seed starts model mse2 rho_d rho_s rho_v m n kappa rms_ln stop robust_scale chi2";
+    assert_eq!(compared, both.split(' ').collect::<Vec<_>>());
 }
 
 #[test]

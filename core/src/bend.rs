@@ -9,6 +9,9 @@ use crate::real::Real;
 /// A sample nearer to a peak than this tan^2 theta_h sees the same of every slope that a fit can have.
 const SPECULAR: f64 = 1e-10;
 
+/// The least slope that a scan sees, over the third least tan theta_h: ln f follows a peak down over many powers of e, so that is far less than 1.
+pub(crate) const FINEST: f64 = 0.09;
+
 /// What the samples near the peak of a lobe tell.
 pub(crate) struct Peak<R> {
     /// The third least tan^2 theta_h that is not 0.

@@ -3,7 +3,7 @@
 use crate::boxqp;
 use crate::geometry::{Block, LANES};
 use crate::lm::Bounds;
-use crate::model::{GROUP, Model, Role, SUMS, WEIGHTS, weights};
+use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, weights};
 use crate::pack::{ALONE, Pack};
 use crate::propose;
 use crate::real::Real;
@@ -17,7 +17,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
     }
 
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        self.inlined_level(bounds, x)
+        Self::levelled(bounds, x, self.inlined_sums(x))
     }
 
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
@@ -30,6 +30,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     /// Places of the weights.
     const WEIGHTS: [Option<usize>; WEIGHTS] = weights(&M::PARAMETERS);
+    /// Has the model an index of refraction? Then minima beside each other differ in it alone.
+    const HAS_INDEX: bool = has_index(&M::PARAMETERS);
 
     /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -42,7 +44,9 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     ) -> Candidate<R, P> {
         let mut x = bounds.lower;
         let fades = propose::shapes(&mut x, &M::PARAMETERS, bounds, (seed, i), &self.seen, region);
-        if let Region::Index(like) = region {
+        if let Region::Index(like) = region
+            && Self::HAS_INDEX
+        {
             // Where the model misfits, least squares of f would take the lobes away.
             M::keep_heights(&self.seen, like, &mut x);
             if fades {
@@ -66,12 +70,10 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         }
     }
 
-    /// [`Scene::level`], compiled into its caller.
+    /// [`Scene::level`], given what [`Residuals::inlined_sums`] are at `x`.
     ///
     /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        let [squares, residuals, weights] = self.sums(x);
+    pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
         let (mut least, mut most) = (R::ZERO, R::MAX);
         for k in Self::WEIGHTS.into_iter().flatten() {
             if x[k] > R::ZERO {
@@ -154,6 +156,17 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
         columns.map(|column| column * unit)
     }
+}
+
+const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
+    let mut k = 0;
+    while k < P {
+        if matches!(parameters[k].role, Role::Index) {
+            return true;
+        }
+        k += 1;
+    }
+    false
 }
 
 /// The weights within bounds that solve `normal weights = rhs` best, and their sum of squares, less what it is at the lower bounds; a weight that is not present is 0.

@@ -17,6 +17,8 @@
 //! | microfacet models | [`microfacet::Microfacet`] | `microfacet.rs`, `bend.rs` | Eq. 5, 14 |
 //! | step within bounds | | `boxqp.rs` | |
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
+//! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |
+//! | models of stray light | [`models::Abg`] and others | `models.rs` | |
 //! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
@@ -30,6 +32,8 @@ mod bend;
 mod boxqp;
 pub mod brdf;
 mod candidate;
+pub mod dual;
+pub mod formula;
 mod fresnel;
 pub mod geometry;
 pub mod joint;
@@ -38,6 +42,7 @@ pub mod lobes;
 pub mod microfacet;
 pub mod minima;
 pub mod model;
+pub mod models;
 pub mod pack;
 mod propose;
 pub mod real;

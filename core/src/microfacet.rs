@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use crate::bend::{bend, peak, ratio};
+use crate::bend::{FINEST, bend, peak, ratio};
 use crate::brdf::{Brdf, EVERY, Lift, PAIR, SECOND, WEIGHT, get, has, lobes, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lm::Bounds;
@@ -144,10 +144,9 @@ where
 
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
         let [surface, volume] = [0, 1].map(|pair| peak(blocks, pair, 2 + pair));
-        // ln f sees a peak over many powers of e: far narrower ones than the distance to its neighbours.
         let nearest = surface.third.min(volume.third);
         Seen {
-            finest: R::of(0.09) * nearest.sqrt(),
+            finest: R::of(FINEST) * nearest.sqrt(),
             peaks: Pack([surface.cos_theta_d, volume.cos_theta_d]),
             near: [surface.near, volume.near],
         }

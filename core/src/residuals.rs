@@ -182,9 +182,9 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         self.sums_of::<false>(x)[0]
     }
 
-    /// The sums of r^2, w r and w^2 over the residuals r = w (ln f - measured), of weight w.
+    /// The sums of r^2, w r and w^2 over the residuals r = w (ln f - measured), of weight w, compiled into its caller.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(crate) fn sums(&self, x: &[R; P]) -> [R; 3] {
+    pub fn inlined_sums(&self, x: &[R; P]) -> [R; 3] {
         if ALONE {
             return self.sums_alone(x);
         }

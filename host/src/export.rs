@@ -6,4 +6,5 @@ pub mod glsl;
 pub mod mitsuba;
 pub mod model;
 pub mod native;
+pub mod openmaterial;
 pub mod zemax;

@@ -1,21 +1,36 @@
 //! Reads scans: from the bytes of a file to samples in radians and sr^-1, with their weights.
 //!
-//! A file goes through the table in [`mod@formats`] to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
+//! A file goes through the table in `formats` to the reader of that format, which gives each scan in it as a [`raw::RawScan`]: numbers as they stand in the file.
 //! [`check`] makes samples of these: units, masks, validity, weights.
 //! Degrees and file formats exist here and in `simulate` only.
 
+pub mod about;
 pub mod bytes;
+mod channel;
 pub mod check;
 pub mod columns;
 mod direction;
+mod doubt;
+mod facts;
 pub mod format;
 mod formats;
+pub mod head;
+mod join;
 pub mod left_out;
 pub mod options;
+pub mod part;
+mod polarisation;
 pub mod raw;
+mod repeats;
+pub mod role;
 mod rows;
+mod sheet;
+mod side;
 mod table;
+pub mod uncertainty;
+pub mod unit;
 pub mod units;
+mod wavelength;
 pub mod weight;
 
 use std::io::Read;
@@ -26,9 +41,13 @@ use brdfit_core::geometry::Sample;
 use crate::engine::FitError;
 use crate::error::Error;
 use crate::plain::{plain, some_of};
+pub use about::About;
+use about::Kind;
 pub use bytes::STDIN;
+use format::Format;
 pub use left_out::LeftOut;
 pub use options::{ReadAs, ReadOptions};
+use raw::RawScan;
 pub use units::azimuth;
 
 /// A scan as it was read.
@@ -48,6 +67,10 @@ pub struct Measurement {
     pub read_as: ReadAs,
     /// What was left out, and why.
     pub left_out: Vec<LeftOut>,
+    /// The samples that were left out although they are valid, and why.
+    pub masked: Vec<(left_out::Reason, Sample<f64>)>,
+    /// What the reader understood of the file.
+    pub about: About,
 }
 
 impl Measurement {
@@ -72,11 +95,22 @@ pub fn label(file: &str, scan: Option<&str>) -> String {
 /// The first file that is missing, not understood, or leaves a doubt about what was measured: with its line and column.
 pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> Result<Vec<Measurement>, Error> {
     once(paths)?;
-    let mut scans = Vec::new();
-    for path in paths {
-        scans.extend(read_file(path, options, stdin)?);
+    let each = join::options_of_each(options, paths.len())?;
+    let mut files = Vec::new();
+    for (path, options) in paths.iter().zip(&each) {
+        let file = path.display().to_string();
+        let bytes = bytes_of(path, stdin)?;
+        let scans = raw_scans(&file, &bytes, options).map_err(|error| error.in_file(&file))?;
+        files.push((file, scans));
     }
-    Ok(scans)
+    if options.one_scan {
+        files = vec![join::one(files)?];
+    }
+    let mut measurements = Vec::new();
+    for (file, scans) in files {
+        measurements.extend(measured(&file, scans, options)?);
+    }
+    Ok(measurements)
 }
 
 /// The name and the bytes of every file, in order.
@@ -120,7 +154,7 @@ fn bytes_of(path: &Path, stdin: &mut dyn Read) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// As [`read`], and if there are several scans.
 pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Result<Measurement, Error> {
-    let mut scans = read_file(path, options, stdin)?;
+    let mut scans = read(&[path.to_path_buf()], options, stdin)?;
     if scans.len() > 1 {
         let names: Vec<&str> = scans.iter().filter_map(|scan| scan.name.as_deref()).collect();
         return Err(
@@ -139,14 +173,35 @@ pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Res
 /// # Errors
 /// As [`read`].
 pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
-    let scans = || -> Result<Vec<Measurement>, Error> {
-        let (format, scans) = formats::scans(bytes, options)?;
-        let scans = raw::select(scans, &options.column)?;
-        let each = scans.into_iter();
-        each.map(|scan| check::measurement(file, format, scan, options))
-            .collect()
-    };
-    scans().map_err(|error| error.in_file(file))
+    let scans = raw_scans(file, bytes, options).map_err(|error| error.in_file(file))?;
+    measured(file, scans, options)
+}
+
+/// The scans that are wanted of the bytes of a file, as they stand there, and its format.
+fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
+    let (format, scans) = formats::scans(bytes, options)?;
+    if let Some(scan) = scans.first() {
+        options.refuse_for(scan.about.kind, format)?;
+    }
+    let mut scans = raw::select(scans, &options.column)?;
+    for scan in &mut scans {
+        about::give_theta_i(file, scan, options)?;
+        if scan.about.kind != Kind::Own {
+            doubt::settle(scan, options)?;
+        }
+    }
+    Ok((format, scans))
+}
+
+/// The measurements in the scans of a file.
+fn measured(
+    file: &str,
+    (format, scans): (Format, Vec<RawScan>),
+    options: &ReadOptions,
+) -> Result<Vec<Measurement>, Error> {
+    let each = scans.into_iter();
+    each.map(|scan| check::measurement(file, format, scan, options).map_err(|error| error.in_file(file)))
+        .collect()
 }
 
 /// Says of a scan that can not be fitted what to do, and names the line instead of the sample.

@@ -5,6 +5,16 @@ use crate::error::{Error, shown};
 use crate::output::shortest;
 use crate::terms::term_names;
 
+/// What the parameters of [`NAMES`] mean.
+pub const MEANINGS: [&str; 6] = [
+    "diffuse reflectance",
+    "weight of the surface lobe",
+    "weight of the volume lobe",
+    "slope of the facets",
+    "index of refraction, real part",
+    "index of refraction, imaginary part",
+];
+
 /// A permitted range of one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {

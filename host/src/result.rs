@@ -1,5 +1,7 @@
 //! What is written of a fitted scan: pages for people, JSON and tables for programs.
 
+pub mod cell;
+pub mod columns;
 mod csv;
 pub mod json;
 mod text;

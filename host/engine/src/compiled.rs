@@ -15,26 +15,29 @@ use crate::simd::{FastScan, Simd};
 use crate::trace::{self, Trace};
 use crate::{FitError, FitOptions, Outcome, Values, joint, search};
 
+/// A cost and the parameters where it is.
+type Found = Option<(f64, Values)>;
+/// A joint fit, or the place of the scan that cannot be fitted, and why.
+type Joint = Result<joint::Fitted, (usize, FitError)>;
+
 /// The computations of one model, or of one set of its terms.
+#[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]
 #[derive(Clone, Copy, Debug)]
 pub struct Compiled {
     pub(crate) terms: u8,
     pub(crate) fit: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Outcome, FitError>,
-    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Option<(f64, Values)>, FitError>,
+    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Found, FitError>,
     pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
-    pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Result<joint::Fitted, (usize, FitError)>,
+    pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Joint,
     pub(crate) ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
-    pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Option<(f64, Values)>,
+    pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Found,
 }
 
 /// A scan of some model, as a search sees it.
 pub type Kernel<'a, R, const P: usize> = dyn Scene<R, P> + Sync + 'a;
 
 /// A model in both precisions, as all of [`brdfit_core`] are.
-pub(crate) trait Both<const P: usize, const C: usize>:
-    Model<f64, P, C> + Model<f32, P, C> + Send + Sync
-{
-}
+pub trait Both<const P: usize, const C: usize>: Model<f64, P, C> + Model<f32, P, C> + Send + Sync {}
 impl<M: Model<f64, P, C> + Model<f32, P, C> + Send + Sync, const P: usize, const C: usize> Both<P, C> for M {}
 
 /// The parameters of a model.
@@ -42,14 +45,14 @@ pub(crate) const fn parameters_of<M: Both<P, C>, const P: usize, const C: usize>
     const { &<M as Model<f64, P, C>>::PARAMETERS }
 }
 
-/// The computations of model `M`; `WIDE` gives single precision vector instructions too.
-pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(terms: u8) -> Compiled {
+/// The computations of model `M`; `VECTORS` says for which instructions, as in [`FastScan`].
+pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Compiled {
     Compiled {
         terms,
-        fit: fit::<M, P, C, WIDE>,
-        descend: descend::<M, P, C>,
-        trace: trace::<M, P, C, WIDE>,
-        joint: joint::<M, P, C>,
+        fit: fit::<M, P, C, VECTORS>,
+        descend: descend::<M, P, C, VECTORS>,
+        trace: trace::<M, P, C, VECTORS>,
+        joint: joint::<M, P, C, VECTORS>,
         ln_f: value::<M, P, C>,
         gradient: gradient::<M, P, C>,
     }
@@ -86,17 +89,14 @@ pub fn blocks_of<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
 }
 
 /// Blocks as a scene.
-fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool>(
+fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     blocks: &[Block<R, LANES, C>],
     simd: Simd,
-) -> FastScan<'_, R, M, P, C, WIDE> {
-    FastScan {
-        scan: Residuals::new(blocks),
-        simd,
-    }
+) -> FastScan<'_, R, M, P, C, VECTORS> {
+    FastScan::new(Residuals::new(blocks), simd)
 }
 
-fn fit<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
+fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
     known: &[Values],
@@ -104,57 +104,57 @@ fn fit<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     let exact = blocks_of::<f64, M, P, C>(samples)?;
-    let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
+    let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
     match options.precision {
         Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options, known),
         Precision::F32 => {
             let blocks = blocks_of::<f32, M, P, C>(samples)?;
-            let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
+            let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
             search::run::<f32, P>(&scene, &exact, own, samples, options, known)
         }
     }
 }
 
-fn descend<M: Both<P, C>, const P: usize, const C: usize>(
+fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
     starts: &[Values],
-) -> Result<Option<(f64, Values)>, FitError> {
+) -> Result<Found, FitError> {
     let blocks = blocks_of::<f64, M, P, C>(samples)?;
-    let scene = scene::<f64, M, P, C, true>(&blocks, options.simd);
+    let scene = scene::<f64, M, P, C, VECTORS>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     Ok(search::descend_from::<P>(&scene, own, options, starts))
 }
 
-fn trace<M: Both<P, C>, const P: usize, const C: usize, const WIDE: bool>(
+fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
 ) -> Result<Trace, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     let exact = blocks_of::<f64, M, P, C>(samples)?;
-    let exact = scene::<f64, M, P, C, WIDE>(&exact, options.simd);
+    let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
     match options.precision {
         Precision::F64 => Ok(trace::watch::<f64, P>(&exact, &exact, own, options)),
         Precision::F32 => {
             let blocks = blocks_of::<f32, M, P, C>(samples)?;
-            let scene = scene::<f32, M, P, C, WIDE>(&blocks, options.simd);
+            let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
             Ok(trace::watch::<f32, P>(&scene, &exact, own, options))
         }
     }
 }
 
-fn joint<M: Both<P, C>, const P: usize, const C: usize>(
+fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     all: &[&[Sample<f64>]],
     shared: &[bool],
     options: &FitOptions,
-) -> Result<joint::Fitted, (usize, FitError)> {
+) -> Joint {
     let each = all.iter().enumerate();
     let each = each.map(|(place, samples)| blocks_of::<f64, M, P, C>(samples).map_err(|error| (place, error)));
     let blocks: Vec<_> = each.collect::<Result<_, _>>()?;
     let scans: Vec<_> = blocks
         .iter()
-        .map(|blocks| scene::<f64, M, P, C, true>(blocks, options.simd))
+        .map(|blocks| scene::<f64, M, P, C, VECTORS>(blocks, options.simd))
         .collect();
     let scans: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
@@ -167,10 +167,7 @@ fn value<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: 
     Some(brdfit_core::residuals::value::<f64, M, P, C>(&x, geometry))
 }
 
-fn gradient<M: Both<P, C>, const P: usize, const C: usize>(
-    values: &[f64],
-    sample: &Sample<f64>,
-) -> Option<(f64, Values)> {
+fn gradient<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: &Sample<f64>) -> Found {
     let geometry = <M as Model<f64, P, C>>::geometry(sample.theta_i, sample.theta_s, sample.delta_phi).ok()?;
     let x = Residuals::<f64, M, P, C>::from_values(values.try_into().ok()?);
     let (value, gradient) = ln_f::<f64, M, P, C>(&x, geometry);

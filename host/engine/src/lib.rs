@@ -20,7 +20,7 @@ pub mod simd;
 pub mod trace;
 pub mod uncertainty;
 
-pub use compiled::{Kernel, blocks, blocks_of};
+pub use compiled::{Both, Kernel, blocks, blocks_of};
 pub use material::Material;
 pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};

@@ -2,6 +2,7 @@
 
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
+use brdfit_core::model::Role;
 use brdfit_core::real::Real;
 
 use crate::{Model, Values};
@@ -41,6 +42,19 @@ impl Material {
             self.values[place] = value;
         }
         self
+    }
+
+    /// The width of its narrowest peak, in slopes of facets or direction cosines, dimensionless; 1 at most.
+    pub fn width(&self) -> f64 {
+        let get = |name: &str| self.get(name);
+        let parameters = self.model.parameters.iter().zip(self.values.iter());
+        let slopes = parameters.filter(|(parameter, _)| parameter.role == Role::Slope);
+        // Of ABg the shoulder is where B is |beta - beta_0|^g, and of K-correlation where b |beta - beta_0| is 1.
+        let abg = get("B").zip(get("g")).filter(|(_, g)| *g > 0.0);
+        let abg = abg.map(|(b, g)| Real::exp(Real::ln(b) / g));
+        let lengths = [get("b"), get("b_2")].into_iter().flatten().map(|b| 1.0 / b);
+        let all = slopes.map(|(_, &slope)| slope).chain(abg).chain(lengths);
+        all.fold(1.0, f64::min).max(1e-7)
     }
 
     /// ln f in the directions of `sample`, f in sr^-1; none beyond the horizon.

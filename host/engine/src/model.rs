@@ -4,8 +4,9 @@ use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::{Parameter, Role};
 
-use crate::compiled::Compiled;
+use crate::compiled::{Both, Compiled, compile, parameters_of};
 use crate::models::MODELS;
+use crate::simd::PORTABLE;
 use crate::{FitError, FitOptions, Values};
 
 /// A model that scans can be fitted with, one of [`MODELS`].
@@ -36,6 +37,32 @@ impl Model {
     /// The paper's model, Eq. 14.
     pub const fn paper() -> &'static Model {
         &MODELS[0]
+    }
+
+    /// A model of one's own; its passes are those of every processor.
+    ///
+    /// ```
+    /// use brdfit_core::formula::Own;
+    /// use brdfit_core::models::Abg;
+    /// use brdfit_engine::{FitOptions, Model};
+    ///
+    /// static MINE: Model = Model::own::<Own<Abg>, 4, 8>("mine", "what it is", "where it is from");
+    /// assert_eq!(FitOptions::of(&MINE).lower.len(), 4);
+    /// ```
+    pub const fn own<M: Both<P, C>, const P: usize, const C: usize>(
+        name: &'static str,
+        what: &'static str,
+        source: &'static str,
+    ) -> Model {
+        Model {
+            name,
+            what,
+            source,
+            parameters: parameters_of::<M, P, C>(),
+            terms: 0,
+            whole: compile::<M, P, C, PORTABLE>(0),
+            sets: &[],
+        }
     }
 
     /// The model of this name.

@@ -1,24 +1,27 @@
 //! Every model that is compiled in, that of the paper first.
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
+use brdfit_core::formula::Own;
 use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, Masking, NoMasking, Smith, VGroove};
 use brdfit_core::microfacet::Microfacet;
+use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
 
 use crate::Model;
 use crate::compiled::{Compiled, compile, parameters_of};
+use crate::simd::{AVX2, AVX512, EVERY};
 
 /// What is new in a model is said in its source; all of these are put together from Eq. 5 of the paper.
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 11] = [
+pub static MODELS: [Model; 15] = [
     Model {
         name: "beckmann",
         what: "Eq. 14: Beckmann, V-groove masking",
         source: "Bishop, Butler and Marciniak 2021, Eq. 14",
         parameters: parameters_of::<Microfacet<ALL>, 6, 6>(),
         terms: ALL,
-        whole: eq_14::<ALL, 6, true>(),
+        whole: eq_14::<ALL, 6, EVERY>(),
         sets: &EQ_14,
     },
     microfacet::<ALL, Beckmann, Smith, 6, 8>("beckmann-smith", "Beckmann, Smith masking", "Walter et al. 2007"),
@@ -55,6 +58,26 @@ pub static MODELS: [Model; 11] = [
         "a distribution with a free tail, the volume lobe with a slope of its own",
         "Renhorn and Boreman 2008",
     ),
+    Model::own::<Own<Abg>, 4, 8>(
+        "abg",
+        "ABg scatter around the specular direction, Lambert's floor",
+        "Pfisterer 2011",
+    ),
+    Model::own::<Own<HarveyShack>, 4, 8>(
+        "harvey-shack",
+        "Harvey-Shack scatter with a shoulder, Lambert's floor",
+        "Harvey 1976; Pfisterer 2011",
+    ),
+    Model::own::<Own<KCorrelation>, 4, 8>(
+        "k-correlation",
+        "roughness of K-correlation spectrum, Lambert's floor",
+        "Church and Takacs 1986; Dittman 2006",
+    ),
+    Model::own::<Own<KCorrelation2>, 7, 8>(
+        "k-correlation-2",
+        "the same with two terms",
+        "Church and Takacs 1986; Dittman 2006",
+    ),
 ];
 
 /// A model put together from Eq. 5, of which terms can be left out as of Eq. 14.
@@ -73,7 +96,7 @@ where
         source,
         parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
         terms: ALL,
-        whole: compile::<Microfacet<TERMS, D, M>, P, C, false>(ALL),
+        whole: compile::<Microfacet<TERMS, D, M>, P, C, AVX2>(ALL),
         sets: &[],
     }
 }
@@ -85,15 +108,15 @@ const A: u8 = ABSORBING;
 
 /// The sets of terms of Eq. 14 that are compiled on their own: what is left out of them costs nothing.
 static EQ_14: [Compiled; 7] = [
-    eq_14::<D, 1, false>(),
-    eq_14::<{ D | S }, 4, false>(),
-    eq_14::<{ D | S | A }, 5, false>(),
-    eq_14::<{ D | S | V }, 5, false>(),
-    eq_14::<S, 3, false>(),
-    eq_14::<{ S | A }, 4, false>(),
-    eq_14::<{ S | V | A }, 5, false>(),
+    eq_14::<D, 1, AVX512>(),
+    eq_14::<{ D | S }, 4, AVX512>(),
+    eq_14::<{ D | S | A }, 5, AVX512>(),
+    eq_14::<{ D | S | V }, 5, AVX512>(),
+    eq_14::<S, 3, AVX512>(),
+    eq_14::<{ S | A }, 4, AVX512>(),
+    eq_14::<{ S | V | A }, 5, AVX512>(),
 ];
 
-const fn eq_14<const TERMS: u8, const P: usize, const WIDE: bool>() -> Compiled {
-    compile::<Microfacet<TERMS>, P, 6, WIDE>(TERMS)
+const fn eq_14<const TERMS: u8, const P: usize, const VECTORS: u8>() -> Compiled {
+    compile::<Microfacet<TERMS>, P, 6, VECTORS>(TERMS)
 }

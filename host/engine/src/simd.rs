@@ -39,6 +39,15 @@ impl Simd {
         Simd::available().pop().unwrap_or(Simd::Portable)
     }
 
+    /// The next fewer instructions, for passes that are not compiled for these.
+    pub fn fewer(self) -> Simd {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(_) => pulp::x86::V3::try_new().map_or(Simd::Portable, Simd::V3),
+            _ => Simd::Portable,
+        }
+    }
+
     /// `portable`, `avx2` or `avx512`.
     pub fn name(self) -> &'static str {
         match self {
@@ -57,11 +66,20 @@ impl PartialEq for Simd {
     }
 }
 
-/// A scan whose passes use `simd`; in single precision without `WIDE` those of every processor.
+/// Passes are those of every processor.
+pub const PORTABLE: u8 = 3;
+/// Passes in double precision have AVX2 beside what every processor has.
+pub const AVX2: u8 = 0;
+/// Those in double precision have AVX-512 too.
+pub const AVX512: u8 = 1;
+/// Those in single precision have both as well.
+pub const EVERY: u8 = 2;
+
+/// A scan whose passes use `simd`, as far as `VECTORS` has them compiled: [`PORTABLE`], [`AVX2`], [`AVX512`] or [`EVERY`].
 ///
-/// Wide vectors of single precision for every model would double the time to compile this crate, and instruments that fit in single precision run their own build.
+/// Each set of instructions takes time to compile, so only Eq. 14 has all: instruments that fit in single precision run their own build.
 #[derive(Debug)]
-pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const WIDE: bool = true> {
+pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const VECTORS: u8 = EVERY> {
     /// The observations.
     pub scan: Residuals<'a, R, M, P, C>,
     /// The instructions.
@@ -71,12 +89,13 @@ pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const WIDE: bo
 /// The same for `TERMS` of Eq. 14.
 pub type FastEq14<'a, R, const TERMS: u8, const P: usize> = FastScan<'a, R, Microfacet<TERMS>, P>;
 
-struct Cost<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Cost<'_, R, M, P, C> {
-    type Output = R;
+/// The pass of both [`Problem::cost`] and [`Scene::level`].
+struct Sums<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Sums<'_, R, M, P, C> {
+    type Output = [R; 3];
     #[inline(always)]
-    fn call(self) -> R {
-        self.0.inlined_cost(self.1)
+    fn call(self) -> [R; 3] {
+        self.0.inlined_sums(self.1)
     }
 }
 
@@ -104,39 +123,40 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce f
     }
 }
 
-struct Level<'a, R, M, const P: usize, const C: usize>(
-    &'a Residuals<'a, R, M, P, C>,
-    &'a Bounds<R, P>,
-    &'a [R; P],
-);
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Level<'_, R, M, P, C> {
-    type Output = ([R; P], R);
-    #[inline(always)]
-    fn call(self) -> ([R; P], R) {
-        self.0.inlined_level(self.1, self.2)
-    }
-}
+impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8>
+    FastScan<'a, R, M, P, C, VECTORS>
+{
+    const DOUBLE: bool = size_of::<R>() == size_of::<f64>();
+    const HAS_AVX2: bool = VECTORS == EVERY || VECTORS != PORTABLE && Self::DOUBLE;
+    const HAS_AVX512: bool = VECTORS == EVERY || VECTORS == AVX512 && Self::DOUBLE;
 
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> FastScan<'_, R, M, P, C, WIDE> {
-    const VECTORS: bool = WIDE || size_of::<R>() == size_of::<f64>();
+    /// A scan with the instructions that `simd` and the passes of this model have both.
+    pub fn new(scan: Residuals<'a, R, M, P, C>, simd: Simd) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        let simd = match simd {
+            Simd::V4(_) if !Self::HAS_AVX512 => simd.fewer(),
+            other => other,
+        };
+        FastScan { scan, simd }
+    }
 
     #[inline(always)]
     fn run<F: NullaryFnOnce>(&self, pass: F) -> F::Output {
         match self.simd {
             #[cfg(target_arch = "x86_64")]
-            Simd::V3(simd) if const { Self::VECTORS } => simd.vectorize(pass),
+            Simd::V4(simd) if const { Self::HAS_AVX512 } => simd.vectorize(pass),
             #[cfg(target_arch = "x86_64")]
-            Simd::V4(simd) if const { Self::VECTORS } => simd.vectorize(pass),
+            Simd::V3(simd) if const { Self::HAS_AVX2 } => simd.vectorize(pass),
             _ => pass.call(),
         }
     }
 }
 
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> Problem<R, P>
-    for FastScan<'_, R, M, P, C, WIDE>
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Problem<R, P>
+    for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn cost(&self, x: &[R; P]) -> R {
-        self.run(Cost(&self.scan, x))
+        self.run(Sums(&self.scan, x))[0]
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.run(Linearize(&self.scan, x))
@@ -146,14 +166,14 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: boo
     }
 }
 
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const WIDE: bool> Scene<R, P>
-    for FastScan<'_, R, M, P, C, WIDE>
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
+    for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         self.run(Propose(&self.scan, bounds, seed, i, region))
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        self.run(Level(&self.scan, bounds, x))
+        Residuals::<R, M, P, C>::levelled(bounds, x, self.run(Sums(&self.scan, x)))
     }
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
         self.scan.apart(x, y, factor)

@@ -4,10 +4,12 @@
 
 mod scans;
 mod settings;
+mod table;
 
 use brdfit::engine::{self, FitError, FitOptions, Method, Model, Outcome, Values};
 use brdfit::input::azimuth;
 use brdfit::parameters::check;
+use brdfit::result::cell::Cell;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::lm::Stop;
@@ -21,6 +23,7 @@ use rayon::prelude::*;
 
 use scans::{Arrays, Scans};
 use settings::Settings;
+use table::Table;
 
 /// What users call is in the package around this module.
 #[pymodule]
@@ -73,6 +76,7 @@ fn fit<'py>(py: Python<'py>, arrays: Arrays<'py>, settings: Settings) -> PyResul
         .map(|it| (it.mse2, it.params.to_vec().into_pyarray(py), it.hits))
         .collect();
     result.set_item("minima", minima)?;
+    result.set_item("table", table::of_one(py, &options, &outcome)?)?;
     Ok(result)
 }
 
@@ -97,11 +101,15 @@ fn fit_many<'py>(
     });
     let pool = pool.map_err(PyValueError::new_err)?;
     let mut rows = Vec::with_capacity(count);
+    let mut table = Table::new(options.model);
     for first in (0..count).step_by(CHUNK) {
         let chunk = first..count.min(first + CHUNK);
-        let one = |scan| row(&scans, scan, invalid, &options);
+        let one = |scan| row(&scans, scan, invalid, &options, &table);
         let done: Result<Vec<Row>, String> = py.detach(|| pool.install(|| chunk.into_par_iter().map(one).collect()));
-        rows.extend(done.map_err(PyValueError::new_err)?);
+        for mut row in done.map_err(PyValueError::new_err)? {
+            table.push(row.cells.take());
+            rows.push(row);
+        }
         py.check_signals()?;
     }
     let result = PyDict::new(py);
@@ -128,6 +136,7 @@ fn fit_many<'py>(
             .collect::<Array1<u8>>()
             .into_pyarray(py),
     )?;
+    result.set_item("table", table.into_dict(py)?)?;
     Ok(result)
 }
 
@@ -145,9 +154,11 @@ struct Row {
     mse2: f64,
     status: u8,
     minima: u8,
+    /// Those of the table; none without a fit.
+    cells: Option<Vec<Cell>>,
 }
 
-fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions) -> Result<Row, String> {
+fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions, table: &Table) -> Result<Row, String> {
     let samples = scans.samples(scan, drop_invalid)?;
     match engine::fit(&samples, options) {
         Ok(outcome) => Ok(Row {
@@ -156,6 +167,7 @@ fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions) -> 
             mse2: outcome.mse2,
             status: status(&outcome),
             minima: outcome.minima.len() as u8,
+            cells: Some(table.cells(options, &outcome)),
             stderr: outcome.uncertainty.stderr,
             cov: outcome.uncertainty.cov,
         }),
@@ -167,6 +179,7 @@ fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions) -> 
             mse2: f64::NAN,
             status: TOO_FEW,
             minima: 0,
+            cells: None,
         }),
         Err(error) => Err(explain(&error)),
     }

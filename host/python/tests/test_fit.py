@@ -108,6 +108,10 @@ def test_many_are_each_as_one(cube):
             assert getattr(one, name).tobytes() == getattr(many, name)[place].tobytes()
         assert (one.fun, one.mse2, one.status) == (many.fun[place], many.mse2[place], many.status[place])
         assert len(one.minima) == many.minima[place]
+        for name, column in many.table.items():
+            assert np.array_equal(column[place], np.array(one.table[name], column.dtype), equal_nan=True), name
+        assert (one.table["mse2"], one.table["m"], one.table["stop"]) == (one.mse2, one.x[3], "cost")
+        assert one.table["terms"] == ["diffuse", "surface", "volume", "absorbing"]
     # Angles of their own for each scan, Fortran order, steps, and a thread are no other numbers.
     angles = np.asfortranarray(np.broadcast_to(theta_s, measured.shape))
     other = brdfit.fit_many(np.full((2, 1, 1), 30), angles[..., ::-1], measured[..., ::-1], threads=1)

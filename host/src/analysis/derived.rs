@@ -48,6 +48,13 @@ pub struct Derived {
     pub reflectance: Value,
 }
 
+impl Derived {
+    /// Does no more light leave than arrives?
+    pub fn conserves_energy(&self) -> bool {
+        self.reflectance.value <= 1.0
+    }
+}
+
 /// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
 pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Vec<Derived> {
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
@@ -104,7 +111,7 @@ fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> 
         }
         Some(gradient)
     };
-    let top = brightest(&ln_f, theta_i, material.get("m").unwrap_or(0.1));
+    let top = brightest(&ln_f, theta_i, lobe.width());
     let (at_top, ln_top) = (gradient(top)?, ln_f(top));
     let f = Real::exp(ln_top);
     let half = |end: f64| {

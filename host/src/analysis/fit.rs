@@ -8,7 +8,7 @@ use super::choose::{self, Choice};
 use super::derived::{self, Derived};
 use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use crate::error::Error;
-use crate::input::{self, LeftOut, Measurement, ReadAs, left_out};
+use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
@@ -19,6 +19,8 @@ pub struct FittedScan {
     pub scan: Option<String>,
     /// What the numbers of the file were taken for.
     pub read_as: ReadAs,
+    /// What the reader understood of the file.
+    pub about: About,
     /// What was left out of the scan.
     pub left_out: Vec<LeftOut>,
     /// The part of each angle of incidence, in order of that angle.
@@ -50,6 +52,18 @@ pub struct AngleOfIncidence {
     pub rms_ln: f64,
 }
 
+impl AngleOfIncidence {
+    /// The angle in degrees as it was measured, without what the way through radians adds.
+    pub fn degrees(&self) -> f64 {
+        rounded(self.theta_i.to_degrees())
+    }
+}
+
+/// Degrees as they stand in files have few decimals.
+fn rounded(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
+}
+
 impl FittedScan {
     /// Puts together what the engine found.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
@@ -58,6 +72,7 @@ impl FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
             read_as: measurement.read_as,
+            about: measurement.about.clone(),
             left_out,
             angles: by_angle(&samples, &outcome.material()),
             derived: derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty),
@@ -120,9 +135,8 @@ fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample
     if let Some(robust) = &outcome.robust {
         let mut counts = left_out::Counts::default();
         for &outlier in robust.outliers.iter().rev() {
-            // Degrees as they stand in the file have few decimals.
             let theta_i = samples.remove(outlier).theta_i.to_degrees();
-            counts.add(left_out::Reason::Outlier, (theta_i * 1e9).round() / 1e9);
+            counts.add(left_out::Reason::Outlier, rounded(theta_i));
         }
         left_out.extend(counts.list());
     }

@@ -87,11 +87,7 @@ const RAYS: usize = 64;
 /// A half of the disk lies around the specular direction, the other around the direction of incidence, where the peaks are: each is integrated along rays from there, ever denser towards it.
 fn of_any(material: &Material, theta_i: f64) -> (f64, Values) {
     let sin_i = Real::sin_cos(theta_i).0;
-    let slopes = material
-        .model
-        .named(&material.values)
-        .filter(|(name, _)| name.starts_with('m'));
-    let width = slopes.map(|(_, m)| m).fold(1.0f64, f64::min).max(1e-6);
+    let width = material.width();
     let rays: [(f64, f64); RAYS] = nodes(2.0 * PI);
     let (mut sum, mut sums) = (0.0, Values::from_fn(material.values.len(), |_| 0.0));
     for side in [1.0, -1.0] {

@@ -26,6 +26,7 @@ use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output;
+use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
 use crate::target::{self, Target};
 use journal::Journal;
@@ -74,18 +75,20 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let form = Form::of(out, arguments.format)?;
     let options = arguments.search.fit_options()?;
+    arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
     let target = match arguments.shard {
         Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
         None => output::target(Some(out), &files)?,
     };
+    let models = vec![options.model];
     let head = Head {
         brdfit: env!("CARGO_PKG_VERSION").to_string(),
         options: asked_for(options, arguments),
         files: files.len(),
         names: record::names(&files),
         rows: form.rows(),
-        columns: run::columns(),
+        columns: run::columns(&models),
         shard,
     };
     let scratch = to_stdout.then(tempfile::tempdir).transpose().map_err(|error| {
@@ -117,6 +120,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let job = run::Job {
         files: &files,
         options,
+        models,
         read: &arguments.read,
         rows: head.rows,
         interrupt,
@@ -165,7 +169,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
 /// A record is broken, or the output cannot be written.
 pub(super) fn deliver(
     form: Form,
-    columns: &[String],
+    columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     target: Option<&Target>,
     streams: &mut Streams,

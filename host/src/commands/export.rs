@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use crate::error::Error;
 use crate::export::model::Model;
-use crate::export::{bird, constants, glsl, mitsuba, native, zemax};
+use crate::export::{bird, constants, glsl, mitsuba, native, openmaterial, zemax};
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
 use crate::output::{deliver, target};
@@ -43,6 +43,9 @@ pub struct Arguments {
     /// For which program
     #[arg(long, value_enum)]
     to: Form,
+    /// Wavelength in nm, for openmaterial [default: that in the name of the scan]
+    #[arg(long, value_name = "NM", value_parser = wavelength)]
+    wavelength: Option<f64>,
     /// Name of the material [default: that of the scan's file]
     #[arg(long)]
     name: Option<String>,
@@ -67,6 +70,8 @@ enum Form {
     Rust,
     /// EURAMET BiRD JSON, the model with its uncertainties
     Bird,
+    /// ASAM OpenMATERIAL 3D BRDF, .xompt
+    Openmaterial,
 }
 
 /// Runs the subcommand.
@@ -105,6 +110,21 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Form::C => constants::c(&model)?,
         Form::Rust => constants::rust(&model)?,
         Form::Bird => bird::write(&model),
+        Form::Openmaterial => {
+            let wavelength = arguments.wavelength.or(model.wavelength).ok_or_else(|| {
+                Error::new("an OpenMATERIAL BRDF has a wavelength, and the scan's name tells none")
+                    .help("give --wavelength in nm")
+            })?;
+            openmaterial::write(&model, wavelength)
+        }
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)
+}
+
+/// A wavelength that the format admits: 1 nm to 17.16 mm.
+fn wavelength(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(length) if (1.0..=17.16e6).contains(&length) => Ok(length),
+        _ => Err("it must be a wavelength in nm, from 1 to 17160000".to_string()),
+    }
 }

@@ -57,6 +57,7 @@ struct Subject {
 /// The first thing that is wrong with options, files or a fit.
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
+    arguments.read.refuse_together("report")?;
     // Results name further files, which are inputs too.
     let target = |inputs: &[PathBuf]| output::target(arguments.output.as_deref(), inputs);
     target(&arguments.scans)?;

@@ -24,6 +24,8 @@ pub struct Model {
     pub stderr: Vec<Option<f64>>,
     /// Where it comes from, in one line.
     pub origin: String,
+    /// The wavelength in nm, if the scan is named by one.
+    pub wavelength: Option<f64>,
 }
 
 impl Model {
@@ -34,6 +36,7 @@ impl Model {
             material,
             stderr: vec![None; material.values.len()],
             origin: format!("parameters given to brdfit {}", env!("CARGO_PKG_VERSION")),
+            wavelength: None,
         }
     }
 
@@ -94,6 +97,7 @@ impl Model {
             },
             stderr: model.parameters.iter().map(stderr).collect(),
             origin: plain(&origin).into_owned(),
+            wavelength: text("scan").and_then(wavelength),
         })
     }
 
@@ -119,6 +123,14 @@ impl Model {
                 .help("--to zemax and --to bird take any model; or fit --model beckmann")
         })
     }
+}
+
+/// The wavelength in a scan's name, such as `R 550 nm` or `550nm`.
+fn wavelength(scan: &str) -> Option<f64> {
+    let before = scan.trim_end().strip_suffix("nm")?.trim_end();
+    let start = before.rfind(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let number = &before[start.map_or(0, |start| start + 1)..];
+    number.parse().ok().filter(|&length| length > 0.0)
 }
 
 /// Words that mean something else to Python, C, C++ or Rust, or are models of Mitsuba's own.
@@ -157,6 +169,20 @@ pub(super) fn word(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wavelengths_are_found_in_names() {
+        for (name, expected) in [
+            ("550 nm", Some(550.0)),
+            ("s 632.8nm", Some(632.8)),
+            ("brdf_550nm", Some(550.0)),
+            ("R", None),
+            ("nm", None),
+            ("0 nm", None),
+        ] {
+            assert_eq!(wavelength(name), expected, "{name}");
+        }
+    }
 
     #[test]
     fn names_become_identifiers() {

@@ -16,7 +16,7 @@ const AZIMUTH_STEP: usize = 5;
 /// The file: degrees, sr^-1; 0 is below the horizon.
 pub fn write(model: &Model) -> String {
     let azimuths: Vec<f64> = (0..=180).step_by(AZIMUTH_STEP).map(|degrees| degrees as f64).collect();
-    let radials = radials(model.material.get("m").unwrap_or(0.1));
+    let radials = radials(model.material.width());
     let mut text = format!("# {}\n", model.origin);
     text += "Source  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\nScatterType  BRDF\n";
     for (keyword, angles) in [

@@ -4,10 +4,12 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::Measurement;
+use super::about::Kind;
 use super::format::Format;
 use super::left_out::Reason;
 use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
+use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight;
 use crate::error::Error;
@@ -15,26 +17,32 @@ use crate::error::Error;
 /// The measurement in a scan of `file`.
 ///
 /// # Errors
-/// Rows that are not valid, if they are not to be left out; no row is left; an angle of incidence is negative.
+/// Rows that are not valid, if they are not to be left out; no row is left; the peak is on the other side.
 pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOptions) -> Result<Measurement, Error> {
     let read_as = ReadAs {
         format,
         angles: options.angles.unwrap_or(scan.angles),
         quantity: options.quantity.unwrap_or(scan.quantity),
-        forward: options.forward,
+        forward: options.forward.unwrap_or_default(),
         weighted: false,
     };
+    let divisor = scan.about.divisor;
+    let mut masked = Vec::new();
     let (mut samples, mut lines) = (Vec::new(), Vec::new());
     let (mut counts, mut faults) = (scan.left_out, Faults::default());
     let mut weights = weight::Count::default();
     for row in &scan.rows {
-        match sample(row, &scan.places, &read_as, options).map_err(|error| at_line(error, row.line))? {
+        let row = &turned_round(row, read_as.angles);
+        match sample(row, &scan.places, &read_as, divisor, options) {
             Seen::Valid(sample, kind) => {
                 weights.add(kind);
                 samples.push(sample);
                 lines.push(row.line);
             }
-            Seen::Masked(reason) => counts.add(reason, degrees(row, &read_as)),
+            Seen::Masked(reason, sample) => {
+                counts.add(reason, degrees(row, &read_as));
+                masked.extend(sample.map(|sample| (reason, sample)));
+            }
             Seen::Invalid { what, column } => {
                 counts.add(Reason::NotValid, degrees(row, &read_as));
                 faults.add(row.line, column, what);
@@ -50,7 +58,10 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
             Error::new(format!("none of the {rows} rows is a valid sample")).help("check the columns, units and masks")
         );
     }
-    let sigma_ln = weights.normalise(&mut samples);
+    if options.forward.is_none() && scan.about.kind != Kind::Own {
+        side::refuse(&samples)?;
+    }
+    let sigma_ln = weights.normalise(&mut samples).or(scan.about.sigma_ln);
     Ok(Measurement {
         file: file.to_string(),
         name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
@@ -62,7 +73,30 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         lines,
         sigma_ln,
         left_out: counts.list(),
+        masked,
+        about: scan.about,
     })
+}
+
+/// A row with its angle of incidence not negative: the plane of incidence is seen from its other side.
+fn turned_round(row: &Row, angles: Angles) -> Row {
+    if !(row.theta_i < 0.0) {
+        return *row;
+    }
+    let half_a_turn = match angles {
+        Angles::Deg => 180.0,
+        Angles::Rad => f64::PI,
+    };
+    Row {
+        theta_i: -row.theta_i,
+        theta_s: if row.delta_phi.is_some() {
+            row.theta_s
+        } else {
+            -row.theta_s
+        },
+        delta_phi: row.delta_phi.map(|phi| phi + half_a_turn),
+        ..*row
+    }
 }
 
 /// The error with its line, if the file has lines.
@@ -78,14 +112,14 @@ fn degrees(row: &Row, read_as: &ReadAs) -> f64 {
 enum Seen {
     /// A sample whose weight is not normalised, and where that is from.
     Valid(Sample<f64>, weight::Source),
-    /// What the user does not want.
-    Masked(Reason),
+    /// What the user does not want; with a sample if it is one.
+    Masked(Reason, Option<Sample<f64>>),
     /// Numbers that are no sample.
     Invalid { what: String, column: Option<u64> },
 }
 
-fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -> Result<Seen, Error> {
-    let invalid = |column: Option<u64>, what: String| Ok(Seen::Invalid { what, column });
+fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &ReadOptions) -> Seen {
+    let invalid = |column: Option<u64>, what: String| Seen::Invalid { what, column };
     for (column, name, angle) in [
         (places.theta_i, "theta_i", row.theta_i),
         (places.theta_s, "theta_s", row.theta_s),
@@ -94,14 +128,6 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
         if !angle.is_finite() {
             return invalid(column, format!("{name} is {angle}, which is no angle"));
         }
-    }
-    if row.theta_i < 0.0 {
-        let error = Error::new(format!("theta_i is {}, and must not be negative", row.theta_i))
-            .help("turn the plane round: change the signs of both theta_i and theta_s in such rows");
-        return Err(Error {
-            column: places.theta_i,
-            ..error
-        });
     }
     let mut sample = Sample {
         theta_i: read_as.angles.radians(row.theta_i),
@@ -114,7 +140,8 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
         sample.theta_s = -sample.theta_s;
     }
     if let Some(reason) = masked(&sample, row.value, options) {
-        return Ok(Seen::Masked(reason));
+        let brdf = read_as.quantity.brdf(row.value / divisor, sample.theta_s).ok();
+        return Seen::Masked(reason, brdf.map(|brdf| Sample { brdf, ..sample }));
     }
     for (column, name, angle, radians) in [
         (places.theta_i, "theta_i", row.theta_i, sample.theta_i),
@@ -128,7 +155,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
             return invalid(column, format!("{name} is {angle} {unit}, at or beyond the horizon"));
         }
     }
-    sample.brdf = match read_as.quantity.brdf(row.value, sample.theta_s) {
+    sample.brdf = match read_as.quantity.brdf(row.value / divisor, sample.theta_s) {
         Ok(brdf) => brdf,
         Err(what) => return invalid(places.value, what),
     };
@@ -140,12 +167,12 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, options: &ReadOptions) -
     let here = factors.filter(|(theta_i, _)| (theta_i.to_radians() - sample.theta_i).abs() < 1e-6);
     sample.weight = here.fold(weight, |weight, (_, factor)| weight * factor);
     if sample.weight == 0.0 {
-        return Ok(Seen::Masked(Reason::NoWeight));
+        return Seen::Masked(Reason::NoWeight, Some(sample));
     }
     if !sample.weight.is_finite() {
         return invalid(places.weight, "the weight is too large to compute with".into());
     }
-    Ok(Seen::Valid(sample, source))
+    Seen::Valid(sample, source)
 }
 
 /// The reason for which the user does not want a sample.
@@ -277,7 +304,7 @@ mod tests {
             ..ReadOptions::default()
         };
         assert!(read(&text, &options).unwrap_err().what.contains("none of the 362 rows"));
-        let text = text.replace("-1", "1");
+        let text = text.replace(",-1\n", ",0.1\n");
         let scan = read(&text, &options).unwrap();
         let counts: Vec<_> = scan
             .left_out
@@ -356,7 +383,7 @@ mod tests {
     #[test]
     fn the_other_sign_is_turned_round() {
         let negative = ReadOptions {
-            forward: Forward::Negative,
+            forward: Some(Forward::Negative),
             ..ReadOptions::default()
         };
         let scan = read("theta_i,theta_s,brdf\n45,-44,2\n", &negative).unwrap();

@@ -1,32 +1,55 @@
-//! Finds the columns of a scan by their names.
+//! Finds the columns of a scan by their names, or where the options say they are.
 
+use super::channel;
+use super::head::{Head, plain};
 use super::options::ReadOptions;
-use super::units::{Angles, Quantity};
+use super::part::{self, Part};
+use super::role::{self, Look, Role};
+use super::uncertainty::{self, WeightKind};
+use super::unit::Unit;
+use super::units::{Angles, Quantity, ValueUnit};
 use crate::error::{Error, shown};
 
 /// Where the columns of a scan are, counted from 0.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Columns {
-    /// Angle of incidence.
-    pub theta_i: usize,
+    /// Angle of incidence; none if it is not in the table.
+    pub theta_i: Option<usize>,
     /// Scattering angle.
     pub theta_s: usize,
-    /// Azimuth of scattering, or its difference from that of incidence; without it the scan is in plane.
-    pub phi_s: Option<usize>,
-    /// Azimuth of incidence; 0 without it.
-    pub phi_i: Option<usize>,
+    /// The azimuth; without it the scan is in plane.
+    pub azimuth: Option<Azimuth>,
     /// The unit of all angles.
     pub angles: Angles,
+    /// True if a name or an option gives that unit.
+    pub angles_named: bool,
     /// Wavelength of the row.
     pub wavelength: Option<usize>,
+    /// Polarisation of the row.
+    pub polarisation: Option<usize>,
+    /// Other columns whose rows are scans of their own for each content: the sample, and what the user asks for.
+    pub splits: Vec<usize>,
+    /// Unit of the value in the row.
+    pub unit: Option<usize>,
     /// The columns of values, each a scan of its own; at least one.
     pub values: Vec<Value>,
-    /// Number of columns.
-    pub count: usize,
+    /// Columns that are not used, with what they look like.
+    pub unused: Vec<(usize, Role)>,
+    /// The heads of all columns.
+    pub heads: Vec<Head>,
+}
+
+/// Where azimuths stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Azimuth {
+    /// The difference in one column.
+    Difference(usize),
+    /// That of scattering, and that of incidence, which is 0 without a column.
+    Of(usize, Option<usize>),
 }
 
 /// A column of values.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Value {
     /// Where it is.
     pub column: usize,
@@ -34,231 +57,297 @@ pub struct Value {
     pub name: Option<String>,
     /// What it holds.
     pub quantity: Quantity,
+    /// What its numbers are divided by: 100 for percent.
+    pub divisor: f64,
     /// Its standard deviation or weight, and which of these it is.
     pub weight: Option<(usize, WeightKind)>,
 }
 
-/// What a column says of the uncertainty of another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WeightKind {
-    /// Standard deviation in the unit of the value.
-    Sigma,
-    /// Standard deviation over the value.
-    RelativeSigma,
-    /// The same in percent.
-    PercentSigma,
-    /// Factor of the residual.
-    Factor,
-}
-
-const THETA_I: [&str; 8] = [
-    "thetai",
-    "thetain",
-    "thetainc",
-    "thetaincident",
-    "incidentangle",
-    "incidenceangle",
-    "angleofincidence",
-    "aoi",
-];
-const THETA_S: [&str; 9] = [
-    "thetas",
-    "thetar",
-    "thetao",
-    "thetaout",
-    "thetasc",
-    "thetascatter",
-    "scatterangle",
-    "scatteringangle",
-    "angleofscatter",
-];
-const PHI_S: [&str; 6] = ["deltaphi", "dphi", "phis", "phir", "phio", "phi"];
-const PHI_I: [&str; 2] = ["phii", "phiin"];
-const WAVELENGTH: [&str; 5] = ["wavelength", "wavelengthnm", "lambda", "lambdanm", "wavelengthi"];
-/// In the order of [`Quantity::ALL`].
-const QUANTITIES: [&[&str]; 6] = [
-    &["brdf", "fr", "f"],
-    &["lnbrdf", "lnfr", "lnf"],
-    &["log10brdf", "logbrdf", "log10f"],
-    &["brdfcos", "ccbrdf", "brdfcosthetas", "fcosthetas"],
-    &["brf", "reflectancefactor", "radiancefactor"],
-    &["brfcos", "brfcosthetas"],
-];
-const SIGMA: [&str; 6] = ["sigma", "std", "sd", "stdev", "uncertainty", "standarddeviation"];
-const UNITS: [&str; 13] = [
-    "degrees",
-    "degree",
-    "deg",
-    "°",
-    "radians",
-    "radian",
-    "rad",
-    "persteradian",
-    "persr",
-    "sr1",
-    "sr⁻¹",
-    "1sr",
-    "%",
-];
-
-/// Finds the columns in a header line.
+/// Finds the columns.
 ///
-/// Case, spaces, punctuation and units do not count: `Theta_i [deg]` is `theta_i_deg`, and `BRDF (1/sr)` is `brdf_per_sr`; angles whose unit is `rad` are in radians.
-/// The values are the columns that the options name, or the BRDF in one of the forms of [`Quantity`], or columns such as `R`, `G`, `B`, `550 nm`, `brdf_550nm`.
-/// A column such as `sigma` or `sigma_R` holds the standard deviation of a value, `rel_sigma` or `sigma_%` the relative one, `weight` a factor.
+/// Case, spaces and punctuation do not count, and units are taken off: `Theta_i [deg]` is `theta_i_deg`, and `BRDF (1/sr)` is `brdf_per_sr`; angles whose unit is `rad` are in radians.
+/// The values are the columns that the options name, or the BRDF in one of the forms of [`Quantity`], or columns such as `R`, `G`, `B`, `550 nm`, `brdf_550nm`, `brdf_s`.
+/// What the options say of a column goes before its name.
 ///
 /// # Errors
-/// A required column is missing, or there are two for one quantity.
-pub fn find(names: &[&str], options: &ReadOptions) -> Result<Columns, Error> {
-    let plain: Vec<String> = names.iter().map(|name| plain(name)).collect();
-    let one = |quantity: &str, synonyms: &[&str]| -> Result<Option<usize>, Error> {
-        let mut places = (0..plain.len()).filter(|&place| synonyms.contains(&plain[place].as_str()));
-        let first = places.next();
-        match places.next() {
-            Some(second) => Err(Error::new(format!("there is more than one column for {quantity}"))
-                .at_column(second as u64 + 1)
-                .help("rename or remove all but one")),
-            None => Ok(first),
+/// A required column is missing, there are two for one quantity, or a unit does not fit.
+pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
+    let mut roles: Vec<Option<Role>> = heads.iter().map(|head| Some(role::role(head))).collect();
+    let mut weight = None;
+    let mut given: Vec<(usize, Quantity)> = Vec::new();
+    for (part, column) in &options.columns {
+        let place = part::place(column, &heads, "--columns")?;
+        // What is given takes the place of what was known by its name.
+        if let Part::Role(role) = part {
+            roles
+                .iter_mut()
+                .filter(|known| **known == Some(*role))
+                .for_each(|known| *known = None);
         }
+        given.extend(part::quantity(*part).map(|quantity| (place, quantity)));
+        roles[place] = match part {
+            Part::Role(role) => Some(*role),
+            other => {
+                weight = Some((place, *other));
+                None
+            }
+        };
+    }
+    // A column that an option gives twice is a mistake; one that it overrides is not used.
+    let mut ignored = Vec::new();
+    for name in &options.ignore {
+        let place = part::place(name, &heads, "--ignore")?;
+        roles[place] = None;
+        ignored.push(place);
+    }
+    let mut splits = Vec::new();
+    for name in &options.split {
+        let place = part::place(name, &heads, "--split")?;
+        roles[place] = None;
+        splits.push(place);
+    }
+    let mut finder = Finder {
+        taken: vec![false; heads.len()],
+        heads: &heads,
+        roles: &roles,
     };
-    let missing = |quantity: &str| {
-        let found: Vec<String> = names.iter().map(|name| shown(name)).collect();
-        Error::new(format!("no column {quantity} among the columns {}", found.join(", ")))
-            .help("the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr")
+    let theta_s = match finder.one("theta_s", Role::ThetaS)? {
+        Some(place) => Some(place),
+        None => finder.one("theta_s", Role::Theta)?,
     };
-    let theta_i = one("theta_i", &THETA_I)?.ok_or_else(|| missing("theta_i_deg"))?;
-    let theta_s = one("theta_s", &THETA_S)?.ok_or_else(|| missing("theta_s_deg"))?;
-    let (phi_s, phi_i) = (one("the azimuth", &PHI_S)?, one("the azimuth of incidence", &PHI_I)?);
-    let angles = unit(names[theta_i]);
-    for place in [Some(theta_s), phi_s, phi_i].into_iter().flatten() {
-        if unit(names[place]) != angles {
+    let theta_i = finder.one("theta_i", Role::ThetaI)?;
+    let azimuth = finder.azimuth()?;
+    let wavelength = finder.one("the wavelength", Role::Wavelength)?;
+    let polarisation = finder.one("the polarisation", Role::Polarisation)?;
+    let unit = finder.one("the unit", Role::Unit)?;
+    splits.extend(finder.one("the sample", Role::Sample)?);
+    for &place in splits.iter().chain(&ignored) {
+        finder.taken[place] = true;
+    }
+    finder.taken.extend(weight.map(|_| false));
+    let theta_s = theta_s.ok_or_else(|| finder.missing("theta_s_deg"))?;
+    let chosen = if given.is_empty() {
+        finder.values(options)?
+    } else {
+        given
+    };
+    let mut taken = finder.taken;
+    taken.truncate(heads.len());
+    let mut values = Vec::new();
+    let several = chosen.len() > 1;
+    for (column, quantity) in chosen {
+        taken[column] = true;
+        let single = !several && role::quantity(&heads[column].plain).is_some();
+        values.push(Value {
+            column,
+            name: (several || !single && options.columns.is_empty()).then(|| channel::name(&heads[column])),
+            quantity,
+            divisor: divisor(&heads[column], column, options)?,
+            weight: None,
+        });
+    }
+    if let Some((place, part)) = weight {
+        taken[place] = true;
+        let coverage = heads[place].coverage.or(options.coverage).unwrap_or(1.0);
+        let kind = match part {
+            Part::Weight => WeightKind::Factor,
+            Part::RelativeSigma if heads[place].unit == Some(Unit::Percent) => WeightKind::PercentSigma(coverage),
+            Part::RelativeSigma => WeightKind::RelativeSigma(coverage),
+            _ => WeightKind::Sigma(coverage),
+        };
+        values.iter_mut().for_each(|value| value.weight = Some((place, kind)));
+    }
+    for place in uncertainty::assign(&heads, &taken, &mut values, options)? {
+        taken[place] = true;
+    }
+    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit];
+    let used: Vec<usize> = used.into_iter().flatten().collect();
+    let unused = (0..heads.len()).filter(|&k| ignored.contains(&k) || !taken[k] && !used.contains(&k));
+    let unused: Vec<(usize, Role)> = unused
+        .map(|place| (place, roles[place].unwrap_or(Role::Unknown(Look::Other))))
+        .collect();
+    let (angles, angles_named) = angles(&heads, theta_i, theta_s, azimuth, options)?;
+    Ok(Columns {
+        theta_i,
+        theta_s,
+        azimuth,
+        angles,
+        angles_named,
+        wavelength,
+        polarisation,
+        splits,
+        unit,
+        values,
+        unused,
+        heads,
+    })
+}
+
+/// Takes columns by their roles.
+struct Finder<'a> {
+    heads: &'a [Head],
+    roles: &'a [Option<Role>],
+    taken: Vec<bool>,
+}
+
+impl Finder<'_> {
+    /// The one column of a role, if there is any.
+    fn one(&mut self, quantity: &str, role: Role) -> Result<Option<usize>, Error> {
+        let mut places = (0..self.heads.len()).filter(|&place| self.roles[place] == Some(role));
+        let (first, second) = (places.next(), places.next());
+        if let (Some(first), Some(second)) = (first, second) {
+            let names = [first, second].map(|place| shown(&self.heads[place].text));
+            return Err(Error::new(format!(
+                "there is more than one column for {quantity}: {}",
+                names.join(" and ")
+            ))
+            .at_column(second as u64 + 1)
+            .help(format!("leave one out with --ignore, such as --ignore {}", second + 1)));
+        }
+        if let Some(first) = first {
+            self.taken[first] = true;
+        }
+        Ok(first)
+    }
+
+    /// Azimuth of scattering with that of incidence, or their difference.
+    fn azimuth(&mut self) -> Result<Option<Azimuth>, Error> {
+        let difference = self.one("the azimuth", Role::DeltaPhi)?;
+        let phi_s = self.one("the azimuth of scattering", Role::PhiS)?;
+        let phi = self.one("the azimuth", Role::Phi)?;
+        let mut all = [difference, phi_s, phi].into_iter().flatten();
+        let first = all.next();
+        if let Some(second) = all.next() {
+            return Err(Error::new("there is more than one column for the azimuth")
+                .at_column(second as u64 + 1)
+                .help("leave one out with --ignore, which takes its name or number"));
+        }
+        if difference.is_some() || first.is_none() {
+            // An azimuth of incidence alone says nothing; whether it matters is seen by its numbers.
+            return Ok(difference.map(Azimuth::Difference));
+        }
+        let phi_i = self.one("the azimuth of incidence", Role::PhiI)?;
+        Ok(first.map(|phi_s| Azimuth::Of(phi_s, phi_i)))
+    }
+
+    /// The columns of values.
+    fn values(&mut self, options: &ReadOptions) -> Result<Vec<(usize, Quantity)>, Error> {
+        let wanted = |head: &Head| options.column.iter().any(|wanted| plain(wanted) == head.plain);
+        let free = |place: &usize| !self.taken[*place];
+        let quantity = |place: usize| match self.roles[place] {
+            Some(Role::Value(quantity)) => quantity,
+            _ => Quantity::Brdf,
+        };
+        if !options.column.is_empty() {
+            let named = (0..self.heads.len())
+                .filter(free)
+                .filter(|&place| wanted(&self.heads[place]));
+            let named: Vec<_> = named.map(|place| (place, quantity(place))).collect();
+            if !named.is_empty() {
+                return Ok(named);
+            }
+        }
+        let mut known = Vec::new();
+        for quantity in Quantity::ALL {
+            known.extend(
+                self.one(quantity.title(), Role::Value(quantity))?
+                    .map(|column| (column, quantity)),
+            );
+        }
+        let asked = known.iter().find(|(_, quantity)| options.quantity == Some(*quantity));
+        let chosen = asked.or(known.first()).copied();
+        for (column, _) in known {
+            self.taken[column] = false;
+        }
+        if let Some(chosen) = chosen {
+            return Ok(vec![chosen]);
+        }
+        let channels: Vec<_> = (0..self.heads.len())
+            .filter(|place| !self.taken[*place] && self.roles[*place].is_some())
+            .filter(|&place| channel::is(&self.heads[place]))
+            .map(|place| (place, channel::quantity(&self.heads[place])))
+            .collect();
+        if channels.is_empty() {
+            Err(self.missing("brdf_per_sr"))
+        } else {
+            Ok(channels)
+        }
+    }
+
+    fn missing(&self, quantity: &str) -> Error {
+        let found: Vec<String> = self.heads.iter().map(|head| shown(&head.text)).collect();
+        let name = quantity.trim_end_matches("_deg").trim_end_matches("_per_sr");
+        Error::new(format!("no column {quantity} among the columns {}", found.join(", "))).help(format!(
+            "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
+        ))
+    }
+}
+
+/// The unit of the angles, and whether it is named.
+fn angles(
+    heads: &[Head],
+    theta_i: Option<usize>,
+    theta_s: usize,
+    azimuth: Option<Azimuth>,
+    options: &ReadOptions,
+) -> Result<(Angles, bool), Error> {
+    let azimuths = match azimuth {
+        None => [None, None],
+        Some(Azimuth::Difference(place)) => [Some(place), None],
+        Some(Azimuth::Of(phi_s, phi_i)) => [Some(phi_s), phi_i],
+    };
+    let places = [theta_i, Some(theta_s), azimuths[0], azimuths[1]].into_iter().flatten();
+    let mut known: Option<Angles> = None;
+    let mut named = options.angles.is_some();
+    for place in places {
+        let head = &heads[place];
+        let unit = match head.unit {
+            Some(Unit::Rad) => Angles::Rad,
+            None | Some(Unit::Deg) => Angles::Deg,
+            Some(_) if options.angles.is_some() => continue,
+            Some(_) => {
+                return Err(
+                    Error::new(format!("'{}' is neither in degrees nor in radians", shown(&head.text)))
+                        .at_column(place as u64 + 1)
+                        .help("convert it, or say with --angles deg or --angles rad what it is"),
+                );
+            }
+        };
+        named |= head.unit.is_some();
+        if options.angles.is_none() && *known.get_or_insert(unit) != unit {
             return Err(Error::new("some angles are in degrees and some in radians")
                 .at_column(place as u64 + 1)
                 .help("give all in one unit, and name it in each column"));
         }
     }
-    let mut values: Vec<(usize, Quantity)> = Vec::new();
-    let wanted = |name: &String| options.column.iter().any(|wanted| self::plain(wanted) == *name);
-    values.extend(
-        (0..plain.len())
-            .filter(|&k| wanted(&plain[k]))
-            .map(|k| (k, quantity(&plain[k]))),
-    );
-    let named = !values.is_empty();
-    if !named {
-        let mut known = Vec::new();
-        for (quantity, synonyms) in Quantity::ALL.into_iter().zip(QUANTITIES) {
-            known.extend(one(quantity.title(), synonyms)?.map(|column| (column, quantity)));
-        }
-        let asked = known.iter().find(|(_, quantity)| options.quantity == Some(*quantity));
-        values.extend(asked.or(known.first()));
-    }
-    let single = !named && !values.is_empty();
-    if values.is_empty() {
-        values.extend(
-            (0..plain.len())
-                .filter(|&k| is_channel(&plain[k]))
-                .map(|k| (k, Quantity::Brdf)),
-        );
-    }
-    if values.is_empty() {
-        return Err(missing("brdf_per_sr"));
-    }
-    let several = values.len() > 1;
-    let value = |(column, quantity): (usize, Quantity)| Value {
-        column,
-        name: (!single).then(|| names[column].trim().to_string()),
-        quantity,
-        weight: weight(names, &plain, &plain[column], several),
-    };
-    Ok(Columns {
-        theta_i,
-        theta_s,
-        phi_s,
-        phi_i,
-        angles,
-        wavelength: one("the wavelength", &WAVELENGTH)?,
-        values: values.into_iter().map(value).collect(),
-        count: plain.len(),
-    })
+    Ok((options.angles.or(known).unwrap_or(Angles::Deg), named))
 }
 
-/// The quantity in a column of this plain name; the BRDF if it is unknown.
-fn quantity(plain: &str) -> Quantity {
-    let known = Quantity::ALL.into_iter().zip(QUANTITIES);
-    let mut matching = known.filter(|(_, synonyms)| synonyms.contains(&plain));
-    matching.next().map_or(Quantity::Brdf, |(quantity, _)| quantity)
-}
-
-/// True of `r`, `g`, `b` and `550nm`, also after `brdf`.
-fn is_channel(plain: &str) -> bool {
-    let tag = plain.strip_prefix("brdf").unwrap_or(plain);
-    let wavelength = tag
-        .strip_suffix("nm")
-        .is_some_and(|number| number.parse::<f64>().is_ok());
-    matches!(tag, "r" | "g" | "b") || wavelength
-}
-
-/// The column that tells how sure the values in column `value` are; with several columns of values it must name its own.
-fn weight(names: &[&str], plain: &[String], value: &str, several: bool) -> Option<(usize, WeightKind)> {
-    let tag = value
-        .strip_prefix("brdf")
-        .filter(|tag| !tag.is_empty())
-        .unwrap_or(value);
-    let kind = |place: usize| {
-        let name = plain[place].as_str();
-        let of_value = |name: &str| name == value || name == tag || (name.is_empty() && !several);
-        if name.strip_prefix("weight").is_some_and(of_value) {
-            return Some(WeightKind::Factor);
-        }
-        let relative = ["relative", "rel"].into_iter().find_map(|word| name.strip_prefix(word));
-        let name = relative.unwrap_or(name);
-        let sigma = SIGMA.iter().any(|sigma| {
-            name.strip_prefix(sigma).is_some_and(of_value) || name.strip_suffix(sigma).is_some_and(of_value)
-        });
-        // The metrologists' `uBRDF`.
-        if !sigma && name.strip_prefix('u') != Some(value) {
-            return None;
-        }
-        Some(match relative {
-            _ if names[place].contains('%') => WeightKind::PercentSigma,
-            Some(_) => WeightKind::RelativeSigma,
-            None => WeightKind::Sigma,
-        })
-    };
-    (0..plain.len()).find_map(|place| Some((place, kind(place)?)))
-}
-
-/// The unit that an angle's name ends in; degrees without one.
-fn unit(name: &str) -> Angles {
-    let letters: String = name.to_lowercase().chars().filter(|c| c.is_alphabetic()).collect();
-    if ["rad", "radian", "radians"].iter().any(|unit| letters.ends_with(unit)) {
-        Angles::Rad
-    } else {
-        Angles::Deg
+/// What the values of a column are divided by.
+fn divisor(head: &Head, column: usize, options: &ReadOptions) -> Result<f64, Error> {
+    match options.value_unit {
+        Some(ValueUnit::Percent) => return Ok(100.0),
+        Some(ValueUnit::Plain) => return Ok(1.0),
+        None => {}
     }
+    of_unit(head.unit, &head.text).map_err(|error| error.at_column(column as u64 + 1))
 }
 
-/// The name without what people write differently.
-pub fn plain(name: &str) -> String {
-    let spelt = name
-        .to_lowercase()
-        .replace('θ', "theta")
-        .replace(['φ', 'ϕ'], "phi")
-        .replace(['δ', '∆'], "delta")
-        .replace(['λ'], "lambda")
-        .replace(['σ'], "sigma");
-    let mut plain: String = spelt
-        .chars()
-        .filter(|c| c.is_alphanumeric() || ['°', '⁻', '%', '.'].contains(c))
-        .collect();
-    for unit in UNITS {
-        if let Some(rest) = plain.strip_suffix(unit).filter(|rest| !rest.is_empty()) {
-            plain.truncate(rest.len());
-            break;
-        }
+/// What values in this unit are divided by; `name` is what messages call their column.
+///
+/// # Errors
+/// The unit is none of a BRDF.
+pub fn of_unit(unit: Option<Unit>, name: &str) -> Result<f64, Error> {
+    match unit {
+        Some(Unit::Percent) => Ok(100.0),
+        // Of a channel, the length is its wavelength.
+        None | Some(Unit::PerSr | Unit::One | Unit::Length(_) | Unit::PerCm) => Ok(1.0),
+        Some(Unit::Foreign | Unit::Deg | Unit::Rad) => Err(Error::new(format!(
+            "'{}' is not in sr^-1, so it is no BRDF before it is calibrated",
+            shown(name)
+        ))
+        .help("divide it by what a known standard gives, or take the numbers as they are with --value-unit plain")),
     }
-    plain
 }
 
 #[cfg(test)]
@@ -266,8 +355,7 @@ mod tests {
     use super::*;
 
     fn find(header: &str) -> Result<Columns, Error> {
-        let names: Vec<&str> = header.split(',').collect();
-        super::find(&names, &ReadOptions::default())
+        super::find(header.split(',').map(Head::new).collect(), &ReadOptions::default())
     }
 
     #[test]
@@ -278,22 +366,34 @@ mod tests {
             "Theta_I [deg],THETA_R (degrees),BRDF (1/sr)",
             "θ_i (°),θ_s (°),f_r (sr⁻¹)",
             "AOI,scatter angle,BRDF [sr^-1]",
+            "theta_i,theta,brdf",
         ] {
             let columns = find(header).unwrap();
             assert_eq!(
                 (columns.theta_i, columns.theta_s, columns.values[0].column),
-                (0, 1, 2),
+                (Some(0), 1, 2),
                 "{header}"
             );
-            assert_eq!((columns.values[0].quantity, columns.phi_s), (Quantity::Brdf, None));
+            assert_eq!((columns.values[0].quantity, columns.azimuth), (Quantity::Brdf, None));
         }
-        let columns = find("ln_brdf,note,delta_phi_deg,theta_s,theta_i,phi_i").unwrap();
-        assert_eq!((columns.theta_i, columns.theta_s, columns.values[0].column), (4, 3, 0));
+        let columns = find("ln_brdf,note,phi_s_deg,theta_s,theta_i,phi_i").unwrap();
         assert_eq!(
-            (columns.values[0].quantity, columns.phi_s, columns.phi_i),
-            (Quantity::LnBrdf, Some(2), Some(5))
+            (columns.theta_i, columns.theta_s, columns.values[0].column),
+            (Some(4), 3, 0)
         );
-        assert_eq!(find("theta_i_rad,theta_s [rad],brdf").unwrap().angles, Angles::Rad);
+        assert_eq!(
+            (columns.values[0].quantity, columns.azimuth, &columns.unused[..]),
+            (
+                Quantity::LnBrdf,
+                Some(Azimuth::Of(2, Some(5))),
+                &[(1, Role::Unknown(Look::Other))][..]
+            )
+        );
+        let columns = find("theta_i_rad,theta_s [rad],raa_rad,brdf").unwrap();
+        assert_eq!(
+            (columns.angles, columns.azimuth),
+            (Angles::Rad, Some(Azimuth::Difference(2)))
+        );
     }
 
     #[test]
@@ -305,31 +405,72 @@ mod tests {
         assert_eq!(
             weights,
             [
-                Some((5, WeightKind::Sigma)),
-                Some((6, WeightKind::RelativeSigma)),
-                Some((7, WeightKind::PercentSigma))
+                Some((5, WeightKind::Sigma(1.0))),
+                Some((6, WeightKind::RelativeSigma(1.0))),
+                Some((7, WeightKind::PercentSigma(1.0)))
             ]
         );
         for (header, kind) in [
-            ("aoi,theta_s,brdf,sigma", WeightKind::Sigma),
-            ("aoi,theta_s,brdf,uBRDF", WeightKind::Sigma),
-            ("aoi,theta_s,brdf,brdf std [1/sr]", WeightKind::Sigma),
+            ("aoi,theta_s,brdf,sigma", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,uBRDF", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,u", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,U (k=2)", WeightKind::Sigma(2.0)),
+            ("aoi,theta_s,brdf,U_BRDF (k=2) [%]", WeightKind::PercentSigma(2.0)),
+            ("aoi,theta_s,brdf,expanded uncertainty (k=2)", WeightKind::Sigma(2.0)),
+            ("aoi,theta_s,brdf,u (%)", WeightKind::PercentSigma(1.0)),
+            ("aoi,theta_s,brdf,relative uncertainty", WeightKind::RelativeSigma(1.0)),
+            ("aoi,theta_s,brdf,std", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,brdf std [1/sr]", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,standard deviation of BRDF", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,ln_brdf,weight", WeightKind::Factor),
         ] {
             assert_eq!(find(header).unwrap().values[0].weight, Some((3, kind)), "{header}");
         }
-        assert_eq!(find("aoi,theta_s,brdf,u,note").unwrap().values[0].weight, None);
+        assert!(
+            find("aoi,theta_s,brdf,U")
+                .unwrap_err()
+                .to_string()
+                .contains("--coverage")
+        );
+        assert!(
+            find("aoi,theta_s,BRF (%),u (%)")
+                .unwrap_err()
+                .to_string()
+                .contains("--columns rel_sigma=4")
+        );
+    }
+
+    #[test]
+    fn units_of_values() {
+        let divisor = |header| find(header).unwrap().values[0].divisor;
+        assert_eq!(divisor("aoi,theta_s,BRF (%)"), 100.0);
+        assert_eq!(divisor("aoi,theta_s,brdf [1/sr]"), 1.0);
+        for header in [
+            "aoi,theta_s,BRDF (mV)",
+            "aoi,theta_s,brdf_counts",
+            "aoi,theta_s,brdf [a.u.]",
+            "aoi,theta_s,BRDF (W/m2/sr)",
+        ] {
+            let error = find(header).unwrap_err();
+            assert!(
+                error.column == Some(3) && error.to_string().contains("--value-unit"),
+                "{error}"
+            );
+        }
     }
 
     #[test]
     fn refuses_missing_and_double_columns() {
         let error = find("theta_i,theta_s,value").unwrap_err().to_string();
         assert!(
-            error.contains("brdf_per_sr") && error.contains("theta_i, theta_s, value"),
+            error.contains("brdf_per_sr")
+                && error.contains("theta_i, theta_s, value")
+                && error.contains("--columns brdf="),
             "{error}"
         );
         let error = find("theta_i,theta_s,theta_r,brdf").unwrap_err();
         assert_eq!(error.column, Some(3));
         assert!(find("theta_i_rad,theta_s_deg,brdf").is_err());
+        assert!(find("theta_i,theta_s,raa,phi_s,brdf").is_err());
     }
 }

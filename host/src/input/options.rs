@@ -5,8 +5,11 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::about::Kind;
 use super::format::Format;
-use super::units::{Angles, Forward, Quantity};
+use super::part::{self, Part};
+use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, WavelengthUnit};
+use crate::error::Error;
 
 /// How files are read; all but `input_format` hold for each scan.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -24,9 +27,36 @@ pub struct ReadOptions {
     /// Unit of the angles [default: the format's]
     #[arg(long, value_enum, value_name = "UNIT")]
     pub angles: Option<Angles>,
-    /// Sign of theta_s on the side of the specular peak
-    #[arg(long, value_enum, value_name = "SIGN", default_value = "positive")]
-    pub forward: Forward,
+    /// Sign of theta_s on the side of the specular peak [default: positive, if the scan does not contradict]
+    #[arg(long, value_enum, value_name = "SIGN")]
+    pub forward: Option<Forward>,
+    /// What the values are counted in [default: what their name says, or plain]
+    #[arg(long, value_enum, value_name = "UNIT")]
+    pub value_unit: Option<ValueUnit>,
+    /// Unit of a column of wavelengths [default: what its name says, or by their size]
+    #[arg(long, value_enum, value_name = "UNIT")]
+    pub wavelength_unit: Option<WavelengthUnit>,
+    /// How rows of s and p polarisation are taken
+    #[arg(long, value_enum, value_name = "HOW", default_value = "apart")]
+    pub polarisation: Polarisation,
+    /// What columns hold, by their numbers or names, such as theta_s=2,brdf=3
+    #[arg(long, value_name = "NAME=COLUMN,...", value_delimiter = ',', value_parser = part::parse, help_heading = TABLES)]
+    pub columns: Vec<(Part, String)>,
+    /// Makes a scan of each content of these columns
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES)]
+    pub split: Vec<String>,
+    /// Leaves columns aside that could matter
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES)]
+    pub ignore: Vec<String>,
+    /// Takes rows that repeat a direction at another value as repeated measurements
+    #[arg(long, help_heading = TABLES)]
+    pub repeats: bool,
+    /// Angle of incidence of a file without one, degrees; of several files one each [default: from a remark or the file's name]
+    #[arg(long, value_name = "DEG,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = theta_i, help_heading = TABLES)]
+    pub theta_i: Vec<f64>,
+    /// Takes all files as parts of one scan, such as one file an angle of incidence
+    #[arg(long, help_heading = TABLES)]
+    pub one_scan: bool,
     /// Takes all directions of a MERL file, one in 97 bins or as --thin says, and not only those in plane
     #[arg(long)]
     pub merl_whole: bool,
@@ -45,6 +75,9 @@ pub struct ReadOptions {
     /// Keeps one in N rows
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "What is left out")]
     pub thin: Option<u32>,
+    /// Coverage factor of uncertainties whose names give none: they are divided by it
+    #[arg(long, value_name = "K", value_parser = positive, help_heading = "Weights")]
+    pub coverage: Option<f64>,
     /// Where weights come from
     #[arg(
         long,
@@ -60,6 +93,56 @@ pub struct ReadOptions {
     /// Factor of the residuals at one angle of incidence; repeatable
     #[arg(long, value_name = "DEG=FACTOR", value_parser = weight_angle, help_heading = "Weights")]
     pub weight_angle: Vec<(f64, f64)>,
+}
+
+/// Where the help has the options of tables alone.
+const TABLES: &str = "Tables";
+
+impl ReadOptions {
+    /// Refuses options that are of several files together.
+    ///
+    /// # Errors
+    /// One of them is given, and `command` reads each file alone.
+    pub fn refuse_together(&self, command: &str) -> Result<(), Error> {
+        let together = self.one_scan || self.theta_i.len() > 1;
+        if !together {
+            return Ok(());
+        }
+        let option = if self.one_scan {
+            "--one-scan"
+        } else {
+            "--theta-i with several angles"
+        };
+        Err(Error::new(format!(
+            "{option} is for several files together, and {command} reads each alone"
+        ))
+        .help("write them as one file with brdfit inspect --one-scan --output scan.csv"))
+    }
+
+    /// Refuses options that only a table has a use for.
+    ///
+    /// # Errors
+    /// One of them is given, and the file is of another format, which is named in the message.
+    pub fn refuse_for(&self, kind: Kind, format: Format) -> Result<(), Error> {
+        let given = [
+            ("--columns", !self.columns.is_empty()),
+            ("--split", !self.split.is_empty()),
+            ("--ignore", !self.ignore.is_empty()),
+            ("--repeats", self.repeats),
+            ("--theta-i", !self.theta_i.is_empty() && kind != Kind::Matrix),
+            ("--polarisation mean", self.polarisation == Polarisation::Mean),
+            ("--wavelength-unit", self.wavelength_unit.is_some()),
+            ("--coverage", self.coverage.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((option, _)) if kind != Kind::Table => Err(Error::new(format!(
+                "{option} is for tables with columns, and this is {}",
+                format.title
+            ))
+            .help(format!("leave {option} out, or call brdfit for this file alone"))),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Where weights come from.
@@ -111,6 +194,20 @@ impl fmt::Display for ReadAs {
 
 fn number(text: &str) -> Result<f64, String> {
     text.trim().parse().map_err(|_| format!("'{text}' is not a number"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        x if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("it must be above 0".to_string()),
+    }
+}
+
+fn theta_i(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        x if x.abs() < 90.0 => Ok(x),
+        _ => Err("it must be an angle between -90 and 90 degrees".to_string()),
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {

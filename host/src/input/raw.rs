@@ -1,8 +1,10 @@
 //! A scan as a reader gives it: numbers as they stand in the file.
 
-use super::columns::plain;
+use super::about::About;
+use super::head::plain;
 use super::left_out::Counts;
 use super::units::{Angles, Quantity};
+use super::wavelength;
 use crate::error::{Error, shown};
 
 /// A scan as it stands in the file; nothing is checked or converted.
@@ -18,6 +20,8 @@ pub struct RawScan {
     pub places: Places,
     /// Its rows, in order.
     pub rows: Vec<Row>,
+    /// What the reader understood.
+    pub about: About,
     /// What the reader left out of it.
     pub left_out: Counts,
 }
@@ -31,6 +35,7 @@ impl RawScan {
             quantity: Quantity::Brdf,
             places: Places::default(),
             rows: Vec::new(),
+            about: About::default(),
             left_out: Counts::default(),
         }
     }
@@ -87,7 +92,9 @@ pub enum Weight {
 /// A wanted name is not there.
 pub fn select(scans: Vec<RawScan>, wanted: &[String]) -> Result<Vec<RawScan>, Error> {
     let is = |scan: &RawScan, name: &String| {
-        let named = |other: &String| plain(other) == plain(name);
+        let length = wavelength::of_name(name);
+        let same_length = |other: &String| length.is_some() && wavelength::of_name(other) == length;
+        let named = |other: &String| plain(other) == plain(name) || same_length(other);
         scan.names.iter().any(named) || named(&scan.names.join(" "))
     };
     if let Some(missing) = wanted.iter().find(|name| !scans.iter().any(|scan| is(scan, name))) {

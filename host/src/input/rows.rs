@@ -4,9 +4,64 @@ use csv::StringRecord;
 
 use crate::error::{Error, shown};
 
-/// What stands between the cells of a table: a tab, a semicolon or a comma if its first line has one, else spaces.
-fn delimiter(first: &str) -> Option<u8> {
-    [b'\t', b';', b','].into_iter().find(|&c| first.as_bytes().contains(&c))
+/// How a table writes fractions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decimal {
+    /// Not seen yet.
+    Unknown,
+    /// `0.5`
+    Point,
+    /// `0,5`
+    Comma,
+}
+
+/// What stands between the cells of a table: a tab, a semicolon or a comma if the line has one, else spaces.
+pub fn delimiter(line: &str) -> Option<u8> {
+    [b'\t', b';', b','].into_iter().find(|&c| line.as_bytes().contains(&c))
+}
+
+/// The lines of a text with their numbers, from 1, and where they begin; any kind of line ends is fine.
+pub fn lines(text: &str) -> impl Iterator<Item = (u64, usize, &str)> {
+    let bytes = text.as_bytes();
+    let mut start = 0;
+    (1..).map_while(move |number| {
+        let rest = bytes.get(start..).filter(|rest| !rest.is_empty())?;
+        let end = start + memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        let begin = start;
+        let pair = bytes[end..].starts_with(b"\r\n");
+        start = end + if pair { 2 } else { 1 };
+        Some((number, begin, &text[begin..end]))
+    })
+}
+
+/// The cells of one line, trimmed.
+pub fn split(line: &str, delimiter: Option<u8>) -> Vec<&str> {
+    let Some(delimiter) = delimiter else {
+        return line.split_whitespace().collect();
+    };
+    let bare = |cell: &'_ str| -> (usize, usize) {
+        let inner = cell.trim();
+        let quoted = inner.len() > 1 && inner.starts_with('"') && inner.ends_with('"');
+        let begin = inner.as_ptr().addr() - cell.as_ptr().addr();
+        if quoted {
+            (begin + 1, begin + inner.len() - 1)
+        } else {
+            (begin, begin + inner.len())
+        }
+    };
+    let mut cells = Vec::new();
+    let (mut begin, mut inside) = (0, false);
+    for (at, byte) in line.bytes().enumerate() {
+        inside ^= byte == b'"';
+        if byte == delimiter && !inside {
+            let (from, to) = bare(&line[begin..at]);
+            cells.push(line[begin + from..begin + to].trim());
+            begin = at + 1;
+        }
+    }
+    let (from, to) = bare(&line[begin..]);
+    cells.push(line[begin + from..begin + to].trim());
+    cells
 }
 
 /// Calls `take` with the line and the cells of each row, without remarks and blank rows.
@@ -15,16 +70,60 @@ fn delimiter(first: &str) -> Option<u8> {
 ///
 /// # Errors
 /// Those of `take`, and quotes that are not closed.
-pub fn for_each(text: &str, mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
+pub fn for_each(text: &str, take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
     let first = text.lines().find(|line| !is_remark(line)).unwrap_or("");
-    let Some(delimiter) = delimiter(first) else {
-        let lines = text.lines().zip(1..).filter(|(line, _)| !is_remark(line));
-        for (line, number) in lines {
-            let cells: Vec<&str> = line.split_whitespace().collect();
+    each(text, delimiter(first), take)
+}
+
+/// The same with a known delimiter, spaces being none.
+///
+/// # Errors
+/// As [`for_each`].
+pub fn each(
+    text: &str,
+    delimiter: Option<u8>,
+    mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>,
+) -> Result<(), Error> {
+    if let Some(delimiter) = delimiter
+        && memchr::memchr(b'"', text.as_bytes()).is_some()
+    {
+        return quoted(text, delimiter, take);
+    }
+    let mut cells: Vec<&str> = Vec::new();
+    for (number, _, line) in lines(text).filter(|(_, _, line)| !is_remark(line)) {
+        cells.clear();
+        match delimiter {
+            None => cells.extend(line.split_ascii_whitespace()),
+            Some(delimiter) => cells.extend(parts(line, delimiter)),
+        }
+        // Spreadsheets write blank rows as delimiters.
+        if cells.iter().any(|cell| !cell.is_empty()) {
             take(number, &cells)?;
         }
-        return Ok(());
-    };
+    }
+    Ok(())
+}
+
+/// The cells of a line without quotes, trimmed.
+fn parts(line: &str, delimiter: u8) -> impl Iterator<Item = &str> {
+    let ends = memchr::memchr_iter(delimiter, line.as_bytes()).chain([line.len()]);
+    let mut begin = 0;
+    ends.map(move |end| {
+        let cell = &line[begin..end];
+        begin = end + 1;
+        // Most cells have nothing to trim.
+        let bare = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
+        let bytes = cell.as_bytes();
+        if bare(bytes.first()) && bare(bytes.last()) {
+            cell
+        } else {
+            cell.trim()
+        }
+    })
+}
+
+/// As [`each`] where cells may be in quotes, and so hold delimiters and line ends.
+fn quoted(text: &str, delimiter: u8, mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
@@ -36,7 +135,7 @@ pub fn for_each(text: &str, mut take: impl FnMut(u64, &[&str]) -> Result<(), Err
         .read_record(&mut record)
         .map_err(|error| Error::new(error.to_string()))?
     {
-        // The reader skips only `#` in the first place of a line, and spreadsheets write blank rows as delimiters.
+        // The reader skips only `#` in the first place of a line.
         let blank = record.iter().all(|cell| cell.trim().is_empty());
         if blank || record[0].trim_start().starts_with('#') {
             continue;
@@ -75,15 +174,112 @@ fn line_of(text: &str, record: &StringRecord) -> u64 {
 /// # Errors
 /// It is none, or there is no such cell.
 pub fn number(cells: &[&str], column: usize) -> Result<f64, Error> {
+    number_in(cells, column, &mut Decimal::Point)
+}
+
+/// The same where fractions may be written with a comma; `decimal` learns what the table does.
+///
+/// # Errors
+/// As [`number`], and if the table writes them both ways.
+pub fn number_in(cells: &[&str], column: usize, decimal: &mut Decimal) -> Result<f64, Error> {
     let cell = cells.get(column).copied().unwrap_or("");
-    cell.parse().map_err(|_| {
-        let help = if cell.contains(',') {
-            "write numbers with a decimal point"
-        } else {
-            "write a number, or NaN and use --drop-invalid if there is no value"
+    if *decimal == Decimal::Unknown {
+        *decimal = match (cell.contains(','), cell.contains('.')) {
+            (true, false) => Decimal::Comma,
+            (false, true) => Decimal::Point,
+            _ => Decimal::Unknown,
+        };
+    }
+    parse(cell, *decimal).ok_or_else(|| {
+        let help = match decimal {
+            Decimal::Comma if cell.contains('.') => "other numbers have a decimal comma; write all in one way",
+            _ if cell.contains(',') => "write numbers with a decimal point",
+            _ => "write a number, or NaN and use --drop-invalid if there is no value",
         };
         Error::new(format!("'{}' is not a number", shown(cell)))
             .at_column(column as u64 + 1)
             .help(help)
     })
+}
+
+/// A number as people and programs write it.
+pub fn parse(cell: &str, decimal: Decimal) -> Option<f64> {
+    if decimal != Decimal::Comma
+        && let Ok(number) = cell.parse()
+    {
+        return Some(number);
+    }
+    let point = match decimal {
+        Decimal::Point => !cell.contains(','),
+        // A point would then part the thousands.
+        _ => !cell.contains('.') && cell.matches(',').count() < 2,
+    };
+    if !point {
+        return None;
+    }
+    // A true minus sign, and the exponent of Fortran.
+    let spelt = cell.replace(',', ".").replace('\u{2212}', "-");
+    spelt.parse().or_else(|_| spelt.replace(['D', 'd'], "e").parse()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_many_hands() {
+        for (cell, decimal, number) in [
+            ("0.5", Decimal::Point, Some(0.5)),
+            ("0,5", Decimal::Comma, Some(0.5)),
+            ("0,5", Decimal::Point, None),
+            ("1.234,5", Decimal::Comma, None),
+            ("0.5", Decimal::Comma, None),
+            ("-1,5e-3", Decimal::Comma, Some(-1.5e-3)),
+            ("\u{2212}80", Decimal::Point, Some(-80.0)),
+            ("1.5D-3", Decimal::Point, Some(1.5e-3)),
+            ("20", Decimal::Comma, Some(20.0)),
+            ("dead", Decimal::Point, None),
+            ("", Decimal::Unknown, None),
+        ] {
+            assert_eq!(parse(cell, decimal), number, "{cell}");
+        }
+        let mut decimal = Decimal::Unknown;
+        assert_eq!(number_in(&["20", "0,25"], 0, &mut decimal).unwrap(), 20.0);
+        assert_eq!(number_in(&["20", "0,25"], 1, &mut decimal).unwrap(), 0.25);
+        assert!(
+            number_in(&["0.5"], 0, &mut decimal)
+                .unwrap_err()
+                .to_string()
+                .contains("decimal comma")
+        );
+    }
+
+    #[test]
+    fn rows_with_and_without_quotes_are_the_same() {
+        let text = "# a\n theta , b\n\n1,2\r\n # x\n,,\n3 ,\u{a0}4\n5,";
+        let rows = |text: &str| {
+            let mut rows: Vec<(u64, Vec<String>)> = Vec::new();
+            each(text, Some(b','), |line, cells| {
+                rows.push((line, cells.iter().map(|cell| cell.to_string()).collect()));
+                Ok(())
+            })
+            .unwrap();
+            rows
+        };
+        let plain = rows(text);
+        assert_eq!(plain[1], (4, vec!["1".to_string(), "2".to_string()]));
+        assert_eq!(plain.iter().map(|row| row.0).collect::<Vec<_>>(), [2, 4, 7, 8]);
+        assert_eq!(rows(&text.replace("1,2", "\"1\",2")), plain);
+    }
+
+    #[test]
+    fn lines_of_all_ends() {
+        for end in ["\n", "\r\n", "\r"] {
+            let text = ["a", "", "b"].join(end);
+            let seen: Vec<_> = lines(&text).map(|(number, _, line)| (number, line)).collect();
+            assert_eq!(seen, [(1, "a"), (2, ""), (3, "b")], "{end:?}");
+        }
+        assert_eq!(split("1, \"a,b\" ,2", Some(b',')), ["1", "a,b", "2"]);
+        assert_eq!(split(" 1  2 ", None), ["1", "2"]);
+    }
 }

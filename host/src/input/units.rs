@@ -37,6 +37,8 @@ impl Angles {
             Angles::Deg => azimuth(angle),
             // Files in radians have five or six decimals.
             Angles::Rad if (angle.abs() - f64::PI).abs() < 5e-6 => f64::PI,
+            // What is in range keeps its bits.
+            Angles::Rad if angle.abs() < f64::PI => angle,
             Angles::Rad => azimuth(angle.to_degrees()),
         }
     }
@@ -68,6 +70,43 @@ pub enum Forward {
     Positive,
     /// The specular peak is at theta_s = -theta_i, or at an azimuth of 0
     Negative,
+}
+
+/// What the numbers of the values are counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ValueUnit {
+    /// Their own unit, as they stand
+    Plain,
+    /// Hundredths of it
+    Percent,
+}
+
+/// The unit of wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WavelengthUnit {
+    /// Nanometres
+    Nm,
+    /// Micrometres
+    Um,
+    /// Metres
+    M,
+    /// 0.1 nm
+    Angstrom,
+    /// Wavenumbers in cm^-1
+    PerCm,
+}
+
+/// How rows of the two polarisations are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Polarisation {
+    /// Each is a scan of its own
+    #[default]
+    Apart,
+    /// The mean of s and p in each direction, which is the BRDF of unpolarised light
+    Mean,
 }
 
 /// What is tabulated; f is the BRDF in sr^-1.
@@ -141,11 +180,11 @@ impl Quantity {
         if !(value > 0.0) {
             return fail("which has no logarithm");
         }
-        let cos_s = Real::sin_cos(theta_s).1;
+        let cos_s = || Real::sin_cos(theta_s).1;
         let brdf = match self {
-            Quantity::BrdfCos => value / cos_s,
+            Quantity::BrdfCos => value / cos_s(),
             Quantity::Brf => value / f64::PI,
-            Quantity::BrfCos => value / (f64::PI * cos_s),
+            Quantity::BrfCos => value / (f64::PI * cos_s()),
             _ => value,
         };
         if brdf >= f64::MIN_POSITIVE && brdf.is_finite() {

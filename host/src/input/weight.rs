@@ -31,6 +31,12 @@ impl Count {
     ///
     /// Returns the standard deviation of ln f that a weight of 1 stands for, if all weights are of standard deviations.
     pub fn normalise(&self, samples: &mut [Sample<f64>]) -> Option<f64> {
+        // Weights that were normalised keep their bits, so that a scan that the program wrote is the same when it is read.
+        let mean_square =
+            samples.iter().map(|sample| sample.weight * sample.weight).sum::<f64>() / samples.len() as f64;
+        if self.sigmas == 0 && (mean_square - 1.0).abs() < 1e-12 {
+            return None;
+        }
         // A power of two changes no digit, and keeps the squares of weights of any size in range.
         let largest = samples
             .iter()

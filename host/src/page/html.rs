@@ -4,7 +4,7 @@ use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::section::Section;
-use crate::analysis::derived::Value;
+use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::Outcome;
 use crate::input::left_out;
@@ -12,8 +12,8 @@ use crate::names;
 use crate::number::{digits, percent, short};
 use crate::output::shortest;
 use crate::plain::plain;
+use crate::result::columns::{Json, of_fits};
 use crate::result::words::{self, shown};
-use crate::terms::term_names;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -112,7 +112,7 @@ fn summary(section: &Section) -> Markup {
             @for open in undetermined(&outcome.material(), known, &report.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
-            @if report.derived.iter().any(|at| at.reflectance.value > 1.0) {
+            @if !report.derived.iter().all(Derived::conserves_energy) {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
             }
             @if section.missed() {
@@ -239,20 +239,25 @@ fn angles(section: &Section) -> Markup {
                     td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
                     td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
-                    td { (with_error(at.reflectance)) @if at.reflectance.value > 1.0 { " (above 1)" } }
+                    td { (with_error(at.reflectance)) @if !at.conserves_energy() { " (above 1)" } }
                 } }
             }
         }
     }
 }
 
-/// What it takes to make this again.
+/// What it takes to make this again, and what came out: every column of the tables of results but the time, which is another each time.
 fn provenance(section: &Section, command: &str) -> Markup {
     let (report, options) = (&section.report, &section.report.options);
     let precision = names::precision(options.precision);
+    let columns = of_fits(&[report.outcome.model])
+        .into_iter()
+        .filter(|column| column.json != Json::Time);
+    let cells = columns.map(|column| (column.cell(&report.into()), column));
+    let numbers = cells.filter(|(cell, _)| !cell.is_empty());
     html! {
         table.provenance {
-            caption { "Provenance. The command gives this page again, to the byte." }
+            caption { "Provenance and results by their names in CSV and JSON, with all digits. The command gives this page again, to the byte." }
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
@@ -261,9 +266,13 @@ fn provenance(section: &Section, command: &str) -> Markup {
                 tr { th.text { "read as" } td.text { (report.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
-                tr { th.text { "model" } td.text { (report.outcome.model.name) } }
-                @if report.outcome.terms != 0 { tr { th.text { "terms" } td.text { (term_names(options.terms).join(", ")) @if report.choice.is_some() { "; the fewest that the scan supports, by BIC" } } } }
-                tr { th.text { "passes" } td.text { (report.outcome.evaluations.linearize) " with derivatives, " (report.outcome.evaluations.cost) " without" } }
+                @if report.choice.is_some() { tr { th.text { "choice" } td.text { "the fewest terms that the scan supports, by BIC" } } }
+            }
+            tbody {
+                @for (cell, column) in numbers { tr {
+                    th.text { code { (column.name) } }
+                    td.text { code { (plain(&cell.text())) } @if !matches!(column.unit, "" | "1") { " " (column.unit) } ", " (column.about) }
+                } }
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Results of earlier fits, whose scans are to be reported.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use serde::Deserialize;
-use serde_json::{Map, Value};
 
 use crate::engine::{Material, Model, Values};
 use crate::error::Error;
@@ -37,7 +37,7 @@ struct Object {
     scan: Option<String>,
     /// That of the paper in results of version 0.1.
     model: Option<String>,
-    parameters: Option<Map<String, Value>>,
+    parameters: Option<HashMap<String, f64>>,
     error: Option<String>,
 }
 
@@ -46,9 +46,7 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
     let objects = one.or_else(|_| serde_json::from_str::<Vec<Object>>(text)).ok()?;
     let fitted = |object: Object| {
         let material = match object.parameters {
-            Some(parameters) => Ok(material(object.model.as_deref(), |name| {
-                parameters.get(name)?.as_f64()
-            })?),
+            Some(values) => Ok(material(object.model.as_deref(), |name| values.get(name).copied())?),
             None => Err(object.error?),
         };
         Some(Fitted {

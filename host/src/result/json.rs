@@ -1,50 +1,68 @@
-//! Reports for programs: one object a scan.
+//! Fitted scans for programs: one object a scan.
 
 mod by_name;
 mod choice;
 mod uncertainty;
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
+use super::cell::Cell;
+use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
-use crate::names;
 use crate::output;
-use crate::terms::term_names;
 pub use by_name::ByName;
 use choice::{Selection, selection};
 use uncertainty::{AtAngle, Known, at_angle, known};
 
 #[derive(Serialize)]
-struct JsonReport<'a> {
-    file: &'a str,
-    scan: Option<&'a str>,
+struct Document<'a> {
+    #[serde(flatten)]
+    head: Columns<'a>,
     input: ReadAs,
+    /// Columns of the table that are not used.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    not_used: &'a [String],
+    /// What was done to the numbers of the file.
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    notes: &'a [String],
     left_out: &'a [LeftOut],
-    samples: usize,
-    method: &'a str,
-    seed: u64,
-    starts: u32,
-    model: &'a str,
-    terms: Vec<&'a str>,
-    mse2: f64,
-    rms_ln: f64,
-    /// Of the standard deviations in the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    chi2: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    robust_scale: Option<f64>,
+    #[serde(flatten)]
+    found: Columns<'a>,
     parameters: ByName<f64>,
-    at_bound: &'a [&'a str],
+    #[serde(flatten)]
+    bounds: Columns<'a>,
     selection: Option<Selection>,
     uncertainty: Known,
     derived: Vec<AtAngle>,
-    stop: &'a str,
+    #[serde(flatten)]
+    end: Columns<'a>,
     minima: Vec<JsonMinimum>,
-    evaluations: JsonEvaluations,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    elapsed_s: Option<f64>,
+    evaluations: Evaluations,
+    #[serde(flatten)]
+    time: Columns<'a>,
+}
+
+/// The columns of the table that stand in one place of the object.
+struct Columns<'a>(&'a FittedScan, Json);
+
+impl Serialize for Columns<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Columns(scan, place) = self;
+        let mut map = serializer.serialize_map(None)?;
+        for column in of_fits(&[scan.outcome.model])
+            .iter()
+            .filter(|column| column.json == *place)
+        {
+            let cell = column.cell(&Row::from(*scan));
+            if *place == Json::Head || cell != Cell::Empty {
+                map.serialize_entry(&column.name, &cell)?;
+            }
+        }
+        map.end()
+    }
 }
 
 #[derive(Serialize)]
@@ -56,13 +74,13 @@ struct JsonMinimum {
 }
 
 #[derive(Serialize)]
-struct JsonEvaluations {
+struct Evaluations {
     cost: u32,
     linearize: u32,
 }
 
-fn json_report(report: &FittedScan) -> JsonReport<'_> {
-    let outcome = &report.outcome;
+fn document(scan: &FittedScan) -> Document<'_> {
+    let outcome = &scan.outcome;
     let parameters = |values: &Values| ByName::new(outcome.model, |place| values[place]);
     let minimum = |minimum: &Minimum| JsonMinimum {
         mse2: minimum.mse2,
@@ -70,40 +88,32 @@ fn json_report(report: &FittedScan) -> JsonReport<'_> {
         hits: minimum.hits,
         first_start: minimum.first_start,
     };
-    JsonReport {
-        file: &report.file,
-        scan: report.scan.as_deref(),
-        input: report.read_as,
-        left_out: &report.left_out,
-        samples: outcome.samples,
-        method: names::method(report.options.method),
-        seed: report.options.seed,
-        starts: report.options.starts(),
-        model: outcome.model.name,
-        terms: term_names(outcome.terms),
-        mse2: outcome.mse2,
-        rms_ln: outcome.rms_ln,
-        chi2: report.chi2,
-        robust_scale: outcome.robust.as_ref().map(|robust| robust.scale),
+    Document {
+        head: Columns(scan, Json::Head),
+        input: scan.read_as,
+        not_used: &scan.about.unused,
+        notes: &scan.about.notes,
+        left_out: &scan.left_out,
+        found: Columns(scan, Json::Found),
         parameters: parameters(&outcome.params),
-        at_bound: &outcome.at_bound,
-        selection: report.choice.as_ref().map(selection),
-        uncertainty: known(&outcome.material(), &outcome.uncertainty, &report.derived),
-        derived: report.derived.iter().map(at_angle).collect(),
-        stop: names::stop(outcome.stop),
+        bounds: Columns(scan, Json::Bounds),
+        selection: scan.choice.as_ref().map(selection),
+        uncertainty: known(&outcome.material(), &outcome.uncertainty, &scan.derived),
+        derived: scan.derived.iter().map(at_angle).collect(),
+        end: Columns(scan, Json::End),
         minima: outcome.minima.iter().map(minimum).collect(),
-        evaluations: JsonEvaluations {
+        evaluations: Evaluations {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
-        elapsed_s: report.elapsed.map(|elapsed| elapsed.as_secs_f64()),
+        time: Columns(scan, Json::Time),
     }
 }
 
 /// One object for one scan, an array for several.
-pub fn json(reports: &[FittedScan]) -> String {
-    let objects: Vec<_> = reports.iter().map(json_report).collect();
-    match objects.as_slice() {
+pub fn json(scans: &[FittedScan]) -> String {
+    let documents: Vec<_> = scans.iter().map(document).collect();
+    match documents.as_slice() {
         [one] => output::json(one),
         several => output::json(&several),
     }

@@ -24,6 +24,12 @@ fn page(report: &FittedScan, minima: bool) -> String {
     let mut line = |text: String| page.push_str(&(text + "\n"));
     line(label(&report.file, report.scan.as_deref()));
     line(format!("  read as    {}", report.read_as));
+    for note in &report.about.notes {
+        line(format!("  note       {note}"));
+    }
+    if !report.about.unused.is_empty() {
+        line(format!("  not used   {}", report.about.unused()));
+    }
     line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
     if let Some(summary) = left_out::summary(&report.left_out) {
         line(format!("  left out   {summary}"));

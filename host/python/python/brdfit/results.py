@@ -60,6 +60,8 @@ class Fit:
     """Names of the parameters that ended on a bound."""
     minima: tuple[Minimum, ...]
     """The distinct minima that were met, best first."""
+    table: dict[str, Any]
+    """The fit as a row of the program's tables: columns by the names of its CSV; None where there is no value."""
 
     @classmethod
     def _of(cls, found: dict[str, Any]) -> Fit:
@@ -109,10 +111,14 @@ class Fits:
     """How the best fit of each scan ended, see `MESSAGES`; shape (...)."""
     minima: NDArray[np.uint8]
     """Number of distinct minima that were met; shape (...)."""
+    table: dict[str, NDArray[Any]]
+    """The fits as columns of numbers, by the names of the program's CSV; NaN where there is no value; each of shape (...)."""
 
     @classmethod
     def _of(cls, found: dict[str, Any], shape: tuple[int, ...]) -> Fits:
-        return cls(**{name: array.reshape(shape + array.shape[1:]) for name, array in found.items()})
+        table = {name: column.reshape(shape) for name, column in found.pop("table").items()}
+        arrays = {name: array.reshape(shape + array.shape[1:]) for name, array in found.items()}
+        return cls(table=table, **arrays)
 
     @property
     def parameters(self) -> dict[str, NDArray[np.float64]]:

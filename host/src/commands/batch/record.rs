@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shard::Shard;
 use crate::error::Error;
+use crate::result::cell::{Cell, Kind};
 
 /// The form of the rows that are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,8 +33,8 @@ pub struct Head {
     pub names: u64,
     /// The form of the rows.
     pub rows: Rows,
-    /// The names of the cells.
-    pub columns: Vec<String>,
+    /// The columns of the cells: name, and what it holds.
+    pub columns: Vec<(String, Kind)>,
     /// Which part this is.
     pub shard: Shard,
 }
@@ -69,8 +70,8 @@ pub struct Fitted {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Row {
-    /// One text a column.
-    Cells(Vec<String>),
+    /// One cell a column.
+    Cells(Vec<Cell>),
     /// A JSON object.
     Object(String),
 }
@@ -82,7 +83,7 @@ pub type RowsIn<'a> = &'a mut dyn Iterator<Item = io::Result<Row>>;
 ///
 /// # Errors
 /// It is an object.
-pub fn cells(row: Row) -> io::Result<Vec<String>> {
+pub fn cells(row: Row) -> io::Result<Vec<Cell>> {
     match row {
         Row::Cells(cells) => Ok(cells),
         Row::Object(_) => Err(io::Error::other("a JSON object is no row of a table")),
@@ -217,7 +218,7 @@ pub mod tests {
             index: 3,
             contents: 17,
             scans: vec![Fitted {
-                row: Row::Cells(vec!["a.csv".into(), "0.25".into()]),
+                row: Row::Cells(vec![Cell::Text("a.csv".into()), Cell::Number(0.25)]),
                 line: Err("no".into()),
             }],
         };

@@ -9,6 +9,7 @@ use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
 use crate::output::write_row;
+use crate::result::cell::{Cell, Kind};
 
 /// The form of the file of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -63,7 +64,7 @@ impl Form {
 /// A record is broken, or the output can not be written.
 pub fn write(
     form: Form,
-    columns: &[String],
+    columns: &[(String, Kind)],
     records: &mut dyn Iterator<Item = Result<Record, Error>>,
     out: &mut (dyn Write + Send),
 ) -> io::Result<()> {
@@ -81,11 +82,13 @@ pub fn write(
     }
 }
 
-fn csv(columns: &[String], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
+fn csv(columns: &[(String, Kind)], rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    write_row(&mut writer, columns)?;
+    let names: Vec<&String> = columns.iter().map(|(name, _)| name).collect();
+    write_row(&mut writer, &names)?;
     for row in rows {
-        write_row(&mut writer, &cells(row?)?)?;
+        let texts: Vec<String> = cells(row?)?.iter().map(Cell::text).collect();
+        write_row(&mut writer, &texts)?;
     }
     writer.flush()
 }

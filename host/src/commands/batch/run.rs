@@ -8,11 +8,13 @@ use rayon::prelude::*;
 
 use super::journal::Journal;
 use super::record::{Fitted, Line, Record, Row, Rows, fingerprint};
-use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::FitOptions;
+use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
+use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
 use crate::result;
+use crate::result::cell::{Cell, Kind};
+use crate::result::columns::{Column, Json, of_fits};
 
 /// What is the same for every file.
 pub struct Job<'a> {
@@ -20,6 +22,8 @@ pub struct Job<'a> {
     pub files: &'a [PathBuf],
     /// How they are fitted.
     pub options: FitOptions,
+    /// The models that results can be of.
+    pub models: Vec<&'static Model>,
     /// How they are read.
     pub read: &'a ReadOptions,
     /// What is kept.
@@ -64,7 +68,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fi
             return None;
         }
         Some(match fit(&measurement, &job.options) {
-            Ok(report) => fitted(job, report, &measurement),
+            Ok(scan) => fitted(job, scan, &measurement),
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
         })
     };
@@ -75,50 +79,29 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fi
     }
 }
 
-fn fitted(job: &Job, mut report: FittedScan, measurement: &Measurement) -> Fitted {
+fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> Fitted {
     // Results have the same bits each time, so no time is part of them.
-    report.elapsed = None;
-    let line = line(&report, measurement);
+    scan.elapsed = None;
     let row = match job.rows {
-        Rows::Objects => Row::Object(result::json(std::slice::from_ref(&report)).trim_end().to_string()),
-        Rows::Cells => {
-            let mut cells = table(std::slice::from_ref(&report)).pop().unwrap_or_default();
-            let angles: Vec<String> = line
-                .theta_i
-                .iter()
-                .map(|&angle| crate::output::shortest(angle))
-                .collect();
-            cells.extend([
-                angles.join("+"),
-                crate::output::shortest(line.high),
-                crate::output::shortest(line.improvement_potential),
-                String::new(),
-            ]);
-            Row::Cells(cells)
-        }
+        Rows::Objects => Row::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
+        Rows::Cells => Row::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),
     };
-    Fitted { row, line: Ok(line) }
-}
-
-fn line(report: &FittedScan, measurement: &Measurement) -> Line {
-    let minima = &report.outcome.minima;
-    Line {
-        scan: measurement.label(),
-        theta_i: report
-            .angles
-            .iter()
-            .map(|angle| rounded(angle.theta_i.to_degrees()))
-            .collect(),
-        minima: minima.len(),
-        high: minima.last().map_or(report.outcome.mse2, |worst| worst.mse2),
-        low: report.outcome.mse2,
-        improvement_potential: report.outcome.improvement_potential,
+    Fitted {
+        row,
+        line: Ok(line(&scan, measurement)),
     }
 }
 
-/// Degrees as they were measured, without what the way through radians adds.
-fn rounded(degrees: f64) -> f64 {
-    (degrees * 1e9).round() / 1e9
+fn line(scan: &FittedScan, measurement: &Measurement) -> Line {
+    let minima = &scan.outcome.minima;
+    Line {
+        scan: measurement.label(),
+        theta_i: scan.angles.iter().map(AngleOfIncidence::degrees).collect(),
+        minima: minima.len(),
+        high: minima.last().map_or(scan.outcome.mse2, |worst| worst.mse2),
+        low: scan.outcome.mse2,
+        improvement_potential: scan.outcome.improvement_potential,
+    }
 }
 
 /// The row of a scan that can not be read or fitted.
@@ -128,12 +111,12 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
             Row::Object(serde_json::json!({ "file": file, "scan": scan, "error": error.to_string() }).to_string())
         }
         Rows::Cells => {
-            let mut cells = vec![String::new(); columns().len()];
-            for (cell, name) in cells.iter_mut().zip([file, scan.unwrap_or_default()]) {
-                cell.push_str(name);
-            }
-            *cells.last_mut().expect("there are columns") = error.to_string();
-            Row::Cells(cells)
+            let known = |column: &Column| match column.name.as_str() {
+                "file" => Cell::Text(file.to_string()),
+                "scan" => scan.map_or(Cell::Empty, |scan| Cell::Text(scan.to_string())),
+                _ => Cell::Empty,
+            };
+            Row::Cells(cells(&job.models, known, Cell::Text(error.to_string())))
         }
     };
     Fitted {
@@ -142,19 +125,20 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
     }
 }
 
-/// The columns of a table of results: those of `brdfit fit --format csv` without the time, and those of Table 3.
-pub fn columns() -> Vec<String> {
-    let mut head = table(&[]).remove(0);
-    head.extend(["theta_i_deg", "mse2_high", "improvement_potential", "error"].map(String::from));
-    head
+/// The columns of a table of results: those of a fit without its time, and why there is none.
+pub fn columns(models: &[&Model]) -> Vec<(String, Kind)> {
+    let mut columns: Vec<_> = timeless(models)
+        .map(|column| (column.name.clone(), column.kind()))
+        .collect();
+    columns.push(("error".into(), Kind::Text));
+    columns
 }
 
-/// The rows that `brdfit fit --format csv` prints, with the head.
-fn table(reports: &[FittedScan]) -> Vec<Vec<String>> {
-    let text = result::csv(reports, false);
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .from_reader(text.as_bytes());
-    let rows = reader.records().map_while(Result::ok);
-    rows.map(|row| row.iter().map(String::from).collect()).collect()
+/// A row of these.
+fn cells(models: &[&Model], of: impl Fn(&Column) -> Cell, error: Cell) -> Vec<Cell> {
+    timeless(models).map(|column| of(&column)).chain([error]).collect()
+}
+
+fn timeless(models: &[&Model]) -> impl Iterator<Item = Column> {
+    of_fits(models).into_iter().filter(|column| column.json != Json::Time)
 }

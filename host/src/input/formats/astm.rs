@@ -1,8 +1,8 @@
 //! ASTM E1392 and E2387 text: `KEY value` lines up to `VARS`, then rows of comma-separated numbers, angles in radians.
 
 use crate::error::{Error, shown};
-use crate::input::columns::plain;
 use crate::input::format::{Format, Reader};
+use crate::input::head::plain;
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::number;

@@ -33,6 +33,10 @@ const BINARY: [(&[u8], &str); 17] = [
 
 /// What a file is that no format knows by its bytes, if it is known to hold no scan.
 pub fn named(file: &[u8]) -> Option<Error> {
+    const SHEET: &[u8] = b"application/vnd.oasis.opendocument.spreadsheet";
+    if file.starts_with(b"PK\x03\x04") && memchr::memmem::find(&file[..file.len().min(HEAD)], SHEET).is_some() {
+        return Some(Error::new("this is an OpenDocument spreadsheet (.ods)").help("save the sheet as CSV"));
+    }
     if let Some((_, what)) = BINARY.iter().find(|(begin, _)| file.starts_with(begin)) {
         let help = if what.starts_with("compressed") || what.contains("archive") {
             "unpack it, and give the file in it"
@@ -138,6 +142,10 @@ mod tests {
             (&b"%PDF-1.4\n"[..], "a PDF document"),
             (b"\x89PNG\r\n\x1a\n\0", "a PNG picture"),
             (b"PK\x03\x04\0\0", "a ZIP archive"),
+            (
+                b"PK\x03\x04mimetypeapplication/vnd.oasis.opendocument.spreadsheetPK",
+                "OpenDocument",
+            ),
             (
                 b"OPTIS - Scattering surface file v1.0\nx\n",
                 "'OPTIS - Scattering surface file v1.0' is a model of Speos",

@@ -1,6 +1,7 @@
 //! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
 
 use crate::error::Error;
+use crate::input::about::{Kind, ThetaI};
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
@@ -15,26 +16,36 @@ pub const FORMAT: Format = Format {
     reader: Reader::Text { is, read },
 };
 
-/// True if the first row has numbers in all cells but the first.
+/// True if the first row has numbers in all cells but the first, and the second row is as long.
 fn is(text: &str) -> bool {
-    let mut found = None;
-    // The first row is enough, and the error stops there.
+    let mut lengths = Vec::new();
+    // Two rows are enough, and the error stops there.
     let _ = rows::for_each(text, |_, cells| {
         let is_number = |cell: &&str| cell.parse::<f64>().is_ok_and(f64::is_finite);
         let (corner, angles) = cells.split_first().unwrap_or((&"", &[]));
-        found.get_or_insert(!is_number(corner) && !angles.is_empty() && angles.iter().all(is_number));
-        Err(Error::new("enough"))
+        // `Incident Angle: 20` stands above other tables.
+        let is_remark = corner.ends_with([':', '=']);
+        let is_head = !is_remark && !is_number(corner) && !angles.is_empty() && angles.iter().all(is_number);
+        if is_head || !lengths.is_empty() {
+            lengths.push(cells.len());
+        }
+        if is_head && lengths.len() == 1 {
+            Ok(())
+        } else {
+            Err(Error::new("enough"))
+        }
     });
-    found == Some(true)
+    // With one row alone, what is missing is said by the reader.
+    matches!(lengths[..], [head] if head > 2) || matches!(lengths[..], [head, row] if head == row || head > 3)
 }
 
 /// The one scan in the matrix; cells that are empty or NaN were not measured.
 ///
-/// If the first row has negative angles and the first column has none, they change places, for an angle of incidence is never negative.
+/// Where one axis has azimuths, the options must give the one angle of incidence.
 ///
 /// # Errors
-/// A cell is no number, or a row is of another length.
-fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+/// A cell is no number, a row is of another length, or there are azimuths and no angle of incidence.
+fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut head: Vec<f64> = Vec::new();
     let mut body: Vec<(u64, f64, Vec<f64>)> = Vec::new();
     rows::for_each(text, |line, cells| {
@@ -63,15 +74,31 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     if body.is_empty() {
         return Err(Error::new("there are no rows below the angles").help("give one row a scattering angle"));
     }
-    let turned = head.iter().any(|&angle| angle < 0.0) && body.iter().all(|row| row.1 >= 0.0);
+    let axes = Axes::of(&head, &body, options)?;
     let mut scan = RawScan::new(Vec::new(), Angles::Deg);
+    scan.about.kind = Kind::Matrix;
+    scan.about.angles_named = false;
+    if let Axes::Azimuths { .. } = axes {
+        scan.about.theta_i = ThetaI::Missing {
+            remark: None,
+            names: Vec::new(),
+        };
+        scan.about
+            .notes
+            .push("one axis of the matrix has azimuths, 180 being forward".to_string());
+    }
     for (line, side, values) in body {
         for (&top, value) in head.iter().zip(values) {
-            let (theta_i, theta_s) = if turned { (side, top) } else { (top, side) };
+            let (theta_i, theta_s, delta_phi) = match axes {
+                Axes::Incidence { above: true } => (top, side, None),
+                Axes::Incidence { above: false } => (side, top, None),
+                Axes::Azimuths { above: true } => (f64::NAN, side, Some(top)),
+                Axes::Azimuths { above: false } => (f64::NAN, top, Some(side)),
+            };
             scan.rows.push(Row {
                 theta_i,
                 theta_s,
-                delta_phi: None,
+                delta_phi,
                 value,
                 weight: Weight::Unknown,
                 line,
@@ -80,6 +107,37 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     }
     scan.rows.retain(|row| !row.value.is_nan());
     Ok(vec![scan])
+}
+
+/// What the two axes of a matrix are.
+enum Axes {
+    /// Angles of incidence, in the first row or else in the first column, and scattering angles.
+    Incidence { above: bool },
+    /// Azimuths, in the first row or else in the first column, and scattering angles; the angle of incidence is one.
+    Azimuths { above: bool },
+}
+
+impl Axes {
+    /// Angles of incidence are in the first row, unless that has negative angles and the first column has none, for an angle of incidence is seldom negative.
+    ///
+    /// # Errors
+    /// There are azimuths, and no angle of incidence is given.
+    fn of(head: &[f64], body: &[(u64, f64, Vec<f64>)], options: &ReadOptions) -> Result<Axes, Error> {
+        // A polar angle is within 90 degrees, or beyond 270 where a file counts from 0 to 360.
+        let is_azimuth = |angle: &f64| (angle.abs() + 1e-9) % 360.0 > 90.1 && angle.abs() % 360.0 < 269.9;
+        let above = head.iter().any(is_azimuth);
+        let Some(first) = body.iter().find(|row| above || is_azimuth(&row.1)) else {
+            let turned = head.iter().any(|&angle| angle < 0.0) && body.iter().all(|row| row.1 >= 0.0);
+            return Ok(Axes::Incidence { above: !turned });
+        };
+        if !options.theta_i.is_empty() {
+            return Ok(Axes::Azimuths { above });
+        }
+        let side = if above { "columns" } else { "rows" };
+        Err(Error::new(format!("the {side} are at angles of more than 90 degrees, so they are azimuths and the matrix is of one angle of incidence"))
+            .at_line(if above { first.0.saturating_sub(1).max(1) } else { first.0 })
+            .help("give it in degrees with --theta-i 20; an azimuth of 180 is forward, or 0 with --forward negative"))
+    }
 }
 
 #[cfg(test)]
@@ -106,6 +164,29 @@ mod tests {
         let turned = read(",-80,80\n10,0.5,nan\n60,0.25,1\n").unwrap().remove(0).rows;
         let seen: Vec<_> = turned.iter().map(|row| (row.theta_i, row.theta_s, row.value)).collect();
         assert_eq!(seen, [(10.0, -80.0, 0.5), (60.0, -80.0, 0.25), (60.0, 80.0, 1.0)]);
+    }
+
+    #[test]
+    fn azimuths_are_told_from_angles_of_incidence() {
+        for text in [
+            "t/p -180 0 180\n0 1 2 3\n10 4 5 6\n",
+            "t/p 0 10\n0 1 2\n120 3 4\n240 5 6\n",
+        ] {
+            let error = read(text).unwrap_err().to_string();
+            assert!(error.contains("azimuths") && error.contains("--theta-i"), "{error}");
+            let given = ReadOptions {
+                theta_i: vec![20.0],
+                ..ReadOptions::default()
+            };
+            let rows = super::read(text, &given).unwrap().remove(0).rows;
+            assert_eq!((rows[0].theta_s, rows.len()), (0.0, 6));
+            assert!(
+                rows.iter()
+                    .any(|row| row.delta_phi.is_some_and(|phi| phi > 100.0) && row.theta_s == 10.0)
+            );
+        }
+        // Scattering angles of a full turn are none.
+        assert_eq!(read("a 10 20\n280 1 2\n0 3 4\n80 5 6\n").unwrap()[0].rows.len(), 6);
     }
 
     #[test]

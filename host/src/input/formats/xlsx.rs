@@ -91,3 +91,44 @@ fn text(range: &calamine::Range<calamine::Data>) -> Option<String> {
     }
     Some(text)
 }
+
+#[cfg(all(test, feature = "xlsx"))]
+mod tests {
+    use super::*;
+
+    fn data(name: &str) -> Vec<u8> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/read/");
+        std::fs::read(format!("{folder}{name}")).unwrap()
+    }
+
+    #[test]
+    fn a_sheet_is_the_scan_of_its_csv() {
+        // The workbook has notes on its first sheet, and two empty rows above the second.
+        let file = data("workbook.xlsx");
+        assert!(is(&file));
+        let options = ReadOptions::default();
+        let scans = read(&file, &options).unwrap();
+        let (_, csv) = super::super::scans(&data("f14_latin1_degree.csv"), &options).unwrap();
+        assert_eq!(scans.len(), 1);
+        let rows = |scan: &RawScan| -> Vec<(f64, f64, f64)> {
+            scan.rows
+                .iter()
+                .map(|row| (row.theta_i, row.theta_s, row.value))
+                .collect()
+        };
+        assert_eq!(rows(&scans[0]), rows(&csv[0]));
+        assert_eq!((scans[0].rows[0].line, csv[0].rows[0].line), (4, 2));
+    }
+
+    #[test]
+    fn a_broken_workbook_is_refused() {
+        let mut file = data("workbook.xlsx");
+        let end = file.len() - 100;
+        file.truncate(end);
+        let error = read(&file, &ReadOptions::default()).unwrap_err();
+        assert!(
+            error.what.starts_with("as Excel workbook: ") && !error.what.contains('\n'),
+            "{error}"
+        );
+    }
+}

@@ -112,6 +112,6 @@ pub fn at_angle(at: &Derived) -> AtAngle {
         peak_brdf_per_sr: at.peak.map(|peak| number(peak.f)),
         width_deg: at.peak.and_then(|peak| peak.width).map(degrees),
         reflectance: number(at.reflectance),
-        energy_conserved: at.reflectance.value <= 1.0,
+        energy_conserved: at.conserves_energy(),
     }
 }

@@ -104,10 +104,10 @@ fn table(derived: &[Derived]) -> Vec<String> {
             value: value.value.to_degrees(),
             stderr: value.stderr.to_degrees(),
         };
-        let excess = if at.reflectance.value > 1.0 {
-            "  ABOVE 1: energy is not conserved"
-        } else {
+        let excess = if at.conserves_energy() {
             ""
+        } else {
+            "  ABOVE 1: energy is not conserved"
         };
         lines.push(row([
             short(at.theta_i.to_degrees()),

@@ -1,0 +1,147 @@
+//! Reading of files on one core: bytes a second, each format at two sizes, which tell that the time grows no faster than the file.
+//!
+//! `cargo bench --bench reading`
+
+use std::fmt::Write;
+use std::hint::black_box;
+use std::time::Duration;
+
+use brdfit::input::{self, ReadOptions};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+
+/// Rows of the smaller file; the larger has four times as many.
+const ROWS: usize = 20_000;
+
+/// One made-up row: theta_i, theta_s and BRDF with the digits that instruments write.
+fn row(k: usize) -> (usize, f64, f64) {
+    let (theta_i, theta_s) = (k / 1601, (k % 1601) as f64 / 10.0 - 80.0);
+    (theta_i, theta_s, 0.01 + ((k * 7919) % 99_991) as f64 * 1e-6)
+}
+
+/// A table with this between its cells and at the ends of its lines.
+fn table(rows: usize, between: &str, end: &str) -> Vec<u8> {
+    let mut text = format!("theta_i_deg{between}theta_s_deg{between}brdf_per_sr{end}");
+    for (theta_i, theta_s, f) in (0..rows).map(row) {
+        let _ = write!(text, "{theta_i}{between}{theta_s:.1}{between}{f:.6}{end}");
+    }
+    text.into_bytes()
+}
+
+/// A table whose rows each have a wavelength of their own, and their directions in all of them.
+fn wavelengths(rows: usize) -> Vec<u8> {
+    let mut text = String::from("wavelength_nm,theta_i,theta_s,brdf\n");
+    for theta_s in [-40, 20] {
+        for k in 0..rows / 2 {
+            let _ = writeln!(text, "{},30,{theta_s},{:.6}", 400.0 + k as f64 / 100.0, row(k).2);
+        }
+    }
+    text.into_bytes()
+}
+
+/// Few rows of many columns, one for each wavelength.
+fn columns(cells: usize) -> Vec<u8> {
+    let mut text = String::from("theta_i,theta_s");
+    (0..cells / 4).for_each(|k| text += &format!(",{} nm", 400.0 + k as f64 / 100.0));
+    for theta_s in [-40, -20, 20, 40] {
+        let _ = write!(text, "\n30,{theta_s}");
+        (0..cells / 4).for_each(|k| text += &format!(",{:.6}", row(k).2));
+    }
+    text.into_bytes()
+}
+
+/// A matrix of 20 angles of incidence.
+fn matrix(cells: usize) -> Vec<u8> {
+    let mut text = String::from("theta_s");
+    (0..20).for_each(|k| text += &format!("\t{}", 4 * k));
+    for k in 0..cells / 20 {
+        let _ = write!(text, "\n{:.4}", k as f64 * 3200.0 / cells as f64 - 80.0);
+        (0..20).for_each(|i| text += &format!("\t{:.6}", row(k * 20 + i).2));
+    }
+    text.into_bytes()
+}
+
+fn astm(rows: usize) -> Vec<u8> {
+    let mut text = format!("LAB_NAME none\nNUM_POINTS {rows}\nVARS theta_i,phi_i,theta_s,phi_s,Integrated\n\n");
+    for (theta_i, theta_s, f) in (0..rows).map(row) {
+        let phi = if theta_s < 0.0 { 0.0 } else { std::f64::consts::PI };
+        let (i, s) = ((theta_i as f64).to_radians(), theta_s.abs().to_radians());
+        let _ = writeln!(text, "{i:.6},0.000000,{s:.6},{phi:.6},{f:.6}");
+    }
+    text.into_bytes()
+}
+
+/// Rows of a look-up table in JSON.
+fn openmaterial(rows: usize) -> Vec<u8> {
+    let mut text = String::from("{\"metadata\": {}, \"brdf\": {\"wavelengths\": [5.5e-07], \"lookupTable\": [\n");
+    for (k, (theta_i, theta_s, f)) in (0..rows).map(row).enumerate() {
+        let phi = if theta_s < 0.0 { 0.0 } else { std::f64::consts::PI };
+        let (i, s) = ((theta_i as f64).to_radians(), theta_s.abs().to_radians());
+        let comma = if k == 0 { "" } else { ",\n" };
+        let _ = write!(text, "{comma}[5.5e-07, {i:.6}, {s:.6}, {phi}, {f:.6}]");
+    }
+    (text + "]}}\n").into_bytes()
+}
+
+/// A grid of 40 azimuths at 9 angles of incidence.
+fn zemax(cells: usize) -> Vec<u8> {
+    let radials = cells / 360;
+    let list = |count: usize, step: f64| -> String {
+        let each = (0..count).map(|k| format!("{:.4}", k as f64 * step));
+        each.collect::<Vec<_>>().join("\t")
+    };
+    let mut text = format!(
+        "Source Measured\nSymmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterType BRDF\nSampleRotation 1\n0\n\
+         AngleOfIncidence 9\n{}\nScatterAzimuth 40\n{}\nScatterRadial {radials}\n{}\n\nMonochrome\nDataBegin\n",
+        list(9, 8.0),
+        list(40, 4.5),
+        list(radials, 20.0 / radials as f64)
+    );
+    for incidence in 0..9 {
+        text += "TIS 0.1\n";
+        for azimuth in 0..40 {
+            let values = (0..radials).map(|k| format!("{:.3e}", row(incidence * 7 + azimuth * 11 + k).2));
+            text += &(values.collect::<Vec<_>>().join("\t") + "\n");
+        }
+    }
+    (text + "DataEnd\n").into_bytes()
+}
+
+fn reading(criterion: &mut Criterion) {
+    type Write = fn(usize) -> Vec<u8>;
+    let files: [(&str, Write); 10] = [
+        ("CSV", |rows| table(rows, ",", "\n")),
+        ("CSV, CR LF", |rows| table(rows, ",", "\r\n")),
+        ("CSV, CR", |rows| table(rows, ",", "\r")),
+        ("spaces", |rows| table(rows, "  ", "\n")),
+        ("wavelengths in rows", wavelengths),
+        ("wavelengths in columns", columns),
+        ("matrix", matrix),
+        ("ASTM", astm),
+        ("OpenMATERIAL", openmaterial),
+        ("Zemax", zemax),
+    ];
+    let options = ReadOptions {
+        drop_invalid: true,
+        ..ReadOptions::default()
+    };
+    let mut group = criterion.benchmark_group("reading");
+    for (name, file) in files {
+        for rows in [ROWS, 4 * ROWS] {
+            let bytes = file(rows);
+            group.throughput(Throughput::Bytes(bytes.len() as u64));
+            group.bench_function(BenchmarkId::new(name, rows), |b| {
+                b.iter(|| {
+                    input::parse("file", black_box(&bytes), &options).unwrap_or_else(|error| panic!("{name}: {error}"))
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2)).sample_size(10);
+    targets = reading
+}
+criterion_main!(benches);

@@ -1,0 +1,145 @@
+//! Numbers that cannot be what they are taken for, and angles of a full turn.
+
+use super::options::ReadOptions;
+use super::raw::{RawScan, Row};
+use super::units::{Angles, Quantity};
+use crate::error::Error;
+
+/// Half a right angle in radians is less than this, and no scan in degrees is so narrow without a reason.
+const RIGHT_ANGLE: f64 = 1.6;
+/// A reflectance factor that no surface has in all directions.
+const BRIGHTEST: f64 = 2.0;
+/// A scan over fewer degrees may be of a peak alone.
+const WIDE: f64 = 60.0;
+/// Fewer samples say little of all directions.
+const FEW: usize = 8;
+
+/// Makes angles of 0 to 360 degrees signed, and refuses what cannot be.
+///
+/// # Errors
+/// Angles in another unit, azimuths in place of scattering angles, values in percent or in no unit of a BRDF; each with the option that settles it.
+pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
+    let unit = options.angles.unwrap_or(scan.angles);
+    if options.angles.is_none() {
+        unit_of_angles(scan, unit)?;
+    }
+    full_turn(scan, unit)?;
+    if options.value_unit.is_none() && scan.about.divisor == 1.0 {
+        size_of_values(scan, unit, options)?;
+    }
+    Ok(())
+}
+
+/// The largest of some finite numbers without their signs; 0 without any.
+fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+    numbers.filter(|x| x.is_finite()).map(f64::abs).fold(0.0, f64::max)
+}
+
+/// Are degrees radians, or radians degrees?
+fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
+    let polar = largest(scan.rows.iter().flat_map(|row| [row.theta_i, row.theta_s]));
+    let Some(first) = scan.rows.first() else { return Ok(()) };
+    let at = |error: Error| {
+        if first.line > 0 {
+            error.at_line(first.line)
+        } else {
+            error
+        }
+    };
+    match unit {
+        Angles::Deg if scan.rows.len() > 2 && polar > 0.0 && polar <= RIGHT_ANGLE => Err(at(Error::new(format!(
+            "all angles are within {polar} degrees; are they radians?"
+        ))
+        .help("say --angles rad if they are, and --angles deg if not"))),
+        Angles::Rad if polar > RIGHT_ANGLE && polar <= 180.0 => Err(at(Error::new(format!(
+            "an angle is {polar} radians, beyond the horizon; are they degrees?"
+        ))
+        .help("say --angles deg if they are, and --angles rad if not"))),
+        Angles::Deg => {
+            let azimuths = || scan.rows.iter().filter_map(|row| row.delta_phi);
+            let turn = std::f64::consts::TAU;
+            let half = |phi: f64| [0.5 * turn, turn].iter().any(|angle| (phi.abs() - angle).abs() < 5e-3);
+            if largest(azimuths()) <= turn + 5e-3 && azimuths().any(half) {
+                return Err(at(Error::new(
+                    "the azimuths are within 6.3 degrees and one is pi; are they radians?",
+                )
+                .help("give all angles in one unit, or say --angles deg if all are degrees")));
+            }
+            Ok(())
+        }
+        Angles::Rad => Ok(()),
+    }
+}
+
+/// Turns what is beyond three quarters of a turn to negative angles, and refuses scattering angles over more than half a turn.
+fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
+    // Rounding of a file in radians must not make a right angle more than one.
+    let degrees = |angle: f64| (unit.degrees(angle) * 1e6).round() / 1e6;
+    let back = |angle: f64| match unit {
+        Angles::Deg => angle - 360.0,
+        Angles::Rad => angle - std::f64::consts::TAU,
+    };
+    let mut turned = false;
+    for angle in scan
+        .rows
+        .iter_mut()
+        .flat_map(|row| [&mut row.theta_i, &mut row.theta_s])
+    {
+        if (270.0..=360.0).contains(&degrees(*angle)) {
+            *angle = back(*angle);
+            turned = true;
+        }
+    }
+    if turned {
+        scan.about
+            .notes
+            .push("angles above 270 degrees are negative ones: 280 is -80".to_string());
+    }
+    let angles = || scan.rows.iter().filter(|row| row.theta_s.is_finite());
+    let low = angles().map(|row| degrees(row.theta_s)).fold(f64::INFINITY, f64::min);
+    let high = angles()
+        .map(|row| degrees(row.theta_s))
+        .fold(f64::NEG_INFINITY, f64::max);
+    if high - low <= 180.0 {
+        return Ok(());
+    }
+    let beyond = |row: &&Row| degrees(row.theta_s).abs() > 90.0;
+    let error = Error::new(format!(
+        "theta_s goes from {low} to {high} degrees, over more than half a turn, as azimuths do"
+    ))
+    .help("if these are azimuths, name the columns with --columns phi_s=...,theta_s=...; if they are of light that goes through the sample too, leave its rows out of the file");
+    let line = angles().find(beyond).map_or(0, |row| row.line);
+    let error = Error {
+        column: scan.places.theta_s,
+        ..error
+    };
+    Err(if line > 0 { error.at_line(line) } else { error })
+}
+
+/// Refuses values which, over a wide range of angles, are all brighter than any surface.
+fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result<(), Error> {
+    let quantity = options.quantity.unwrap_or(scan.quantity);
+    let (mut low, mut high, mut least) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
+    let mut valid = 0;
+    for row in &scan.rows {
+        let theta_s = unit.degrees(row.theta_s);
+        if let Ok(brdf) = quantity.brdf(row.value, unit.radians(row.theta_s)) {
+            (low, high) = (low.min(theta_s), high.max(theta_s));
+            least = least.min(brdf * std::f64::consts::PI);
+            valid += 1;
+        }
+    }
+    if valid < FEW || !(high - low >= WIDE && least >= BRIGHTEST) {
+        return Ok(());
+    }
+    let what = match quantity {
+        Quantity::Brf | Quantity::BrfCos => "a reflectance factor",
+        _ => "pi times the BRDF",
+    };
+    let error = Error::new(format!(
+        "{what} is {least:.3} or more in all directions, brighter than any surface; are the values in percent, or not calibrated?"
+    ))
+    .help("say --value-unit percent if so, give the --quantity, or take them as they are with --value-unit plain");
+    let first = scan.rows.first().map_or(0, |row| row.line);
+    Err(if first > 0 { error.at_line(first) } else { error })
+}

@@ -1,0 +1,282 @@
+//! What remarks say about a whole table: `Incident Angle: 20`, `# wavelength = 550 nm`.
+
+use super::head::Head;
+use super::role::{self, Role};
+use super::rows;
+use super::unit::Unit;
+use super::wavelength;
+use crate::error::{Error, shown};
+
+/// What the remarks of a file say.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Facts {
+    /// Line and angle of incidence in degrees, as often as it is named.
+    pub theta_i: Vec<(u64, f64)>,
+    /// Wavelength, nanometres.
+    pub wavelength: Option<f64>,
+    /// Polarisation.
+    pub polarisation: Option<String>,
+    /// Name of the scan, as the program writes it.
+    pub scan: Option<String>,
+    /// The standard deviation of ln f that a weight of 1 stands for, as the program writes it.
+    pub sigma_ln: Option<f64>,
+}
+
+impl Facts {
+    /// What the remarks say; each is a line with its number.
+    pub fn of<'a>(remarks: impl Iterator<Item = (u64, &'a str)>) -> Facts {
+        let mut facts = Facts::default();
+        for (line, remark) in remarks {
+            for (key, value) in pairs(remark) {
+                facts.add(line, key, value);
+            }
+        }
+        facts
+    }
+
+    fn add(&mut self, line: u64, key: &str, value: &str) {
+        let head = Head::new(key);
+        match head.plain.as_str() {
+            "scan" => self.scan = Some(value.to_string()),
+            "sigmaln" => self.sigma_ln = value.parse().ok(),
+            _ => {}
+        }
+        match role::role(&head) {
+            Role::ThetaI => {
+                let Some((number, unit)) = quantity(value) else { return };
+                match head.unit.or(unit) {
+                    None | Some(Unit::Deg) => self.theta_i.push((line, number)),
+                    Some(Unit::Rad) => self.theta_i.push((line, number.to_degrees())),
+                    Some(_) => {}
+                }
+            }
+            Role::Wavelength => {
+                let named =
+                    quantity(value).and_then(|(number, unit)| wavelength::nanometres(number, head.unit.or(unit)).ok());
+                self.wavelength = self.wavelength.or(named);
+            }
+            Role::Polarisation => self.polarisation = Some(value.to_string()).filter(|name| !name.is_empty()),
+            _ => {}
+        }
+    }
+
+    /// The one angle of incidence that the remarks name, degrees, if they do.
+    ///
+    /// # Errors
+    /// They name several.
+    pub fn one_theta_i(&self) -> Result<Option<f64>, Error> {
+        let Some(&(first_line, first)) = self.theta_i.first() else {
+            return Ok(None);
+        };
+        match self.theta_i.iter().find(|(_, angle)| *angle != first) {
+            None => Ok(Some(first)),
+            Some((line, other)) => Err(Error::new(format!(
+                "the remarks name two angles of incidence, {first} on line {first_line} and {other} here"
+            ))
+            .at_line(*line)
+            .help("give each angle a file of its own, or the table a column theta_i")),
+        }
+    }
+}
+
+/// The pairs of a key and a value in a remark: one, or several between commas or semicolons.
+fn pairs(remark: &str) -> Vec<(&str, &str)> {
+    let remark = remark
+        .trim()
+        .trim_start_matches(['#', '%', '!', ';', '/', '"', ' '])
+        .trim_end_matches([',', ';', '"', ' ', '\t']);
+    let pair = |text: &'_ str| -> Option<(usize, usize)> {
+        let at = text.find([':', '='])?;
+        Some((at, at + 1))
+    };
+    let cut = |text| -> Option<(&str, &str)> {
+        let text: &str = text;
+        let (end, begin) = pair(text)?;
+        Some((
+            text[..end].trim(),
+            text[begin..].trim().trim_matches([',', ';', '"', '\t', ' ']),
+        ))
+    };
+    for mark in [';', ','] {
+        let parts: Vec<&str> = remark.split(mark).collect();
+        if parts.len() > 1 && parts.iter().all(|part| cut(part).is_some()) {
+            return parts.into_iter().filter_map(cut).collect();
+        }
+    }
+    if let Some(pair) = cut(remark) {
+        return vec![pair];
+    }
+    // A cell each, as spreadsheets write them.
+    let cells = remark.split_once(['\t', ';', ',']);
+    cells
+        .map(|(key, value)| (key.trim(), value.trim_matches(['\t', ';', ',', ' '])))
+        .into_iter()
+        .collect()
+}
+
+/// The number at the beginning of a value, and its unit.
+fn quantity(value: &str) -> Option<(f64, Option<Unit>)> {
+    let end = value
+        .find(|c: char| !(c.is_ascii_digit() || ".,+-−eE".contains(c)))
+        .unwrap_or(value.len());
+    // `20e` of a unit that begins so is no exponent.
+    let number = value[..end].trim_end_matches(['e', 'E', ',']);
+    let (text, unit) = (
+        rows::parse(number, rows::Decimal::Comma).or_else(|| number.parse().ok())?,
+        &value[number.len()..],
+    );
+    let unit = unit.trim();
+    if unit.is_empty() {
+        return Some((text, None));
+    }
+    Some((text, Some(Unit::parse(unit)?)))
+}
+
+/// The angle of incidence in a file's name, degrees: after `aoi`, `theta_i`, `inc` and the like, before `deg`, or the only number.
+///
+/// # Errors
+/// There are several such numbers.
+pub fn theta_i_of_name(file: &str) -> Result<Option<f64>, Error> {
+    let stem = std::path::Path::new(file)
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().to_string());
+    let name = stem.unwrap_or_default();
+    let mut tagged: Vec<f64> = Vec::new();
+    let mut all: Vec<f64> = Vec::new();
+    let mut rest = name.as_str();
+    while let Some(begin) = rest.find(|c: char| c.is_ascii_digit()) {
+        let end = rest[begin..]
+            .find(|c: char| !c.is_ascii_digit() && c != '.')
+            .map_or(rest.len(), |end| begin + end);
+        let number = rest[begin..end].trim_end_matches('.');
+        let before = rest[..begin].trim_end_matches(['_', '-', ' ', '=', '(', '+']);
+        let after = rest[end..].trim_start_matches(['_', '-', ' ', ')']).to_lowercase();
+        let key = before.rsplit(['_', '-', ' ', '.', '(']).next().unwrap_or_default();
+        // `theta_i_20` has two parts in front of the number.
+        let two = before.rsplitn(3, ['_', '-', ' ', '.']).take(2).collect::<Vec<_>>();
+        let two = two.iter().rev().copied().collect::<Vec<_>>().join("_");
+        let keyed = |key: &str| {
+            role::role(&Head::new(key)) == Role::ThetaI
+                || ["inc", "incidence", "incident", "ti"].contains(&key.to_lowercase().as_str())
+        };
+        let other_unit = ["nm", "um", "mm", "cm", "hz", "k"]
+            .iter()
+            .any(|unit| after.starts_with(unit));
+        if let Ok(number) = number.parse::<f64>() {
+            if keyed(key) || keyed(&two) || ["deg", "°", "grad"].iter().any(|unit| after.starts_with(unit)) {
+                tagged.push(number);
+            } else if !other_unit {
+                all.push(number);
+            }
+        }
+        rest = &rest[end..];
+    }
+    let several = |numbers: &[f64]| {
+        Err(Error::new(format!(
+            "the name of the file may give theta_i as {} or {}",
+            numbers[0], numbers[1]
+        ))
+        .help("say which with --theta-i, in degrees"))
+    };
+    match (&tagged[..], &all[..]) {
+        (&[one], _) => Ok(Some(one)),
+        ([], &[one]) if (0.0..90.0).contains(&one) => Ok(Some(one)),
+        ([], [] | [_]) => Ok(None),
+        ([], numbers) => several(numbers),
+        (numbers, _) => several(numbers),
+    }
+}
+
+/// What is shown of an angle of incidence that a file does not have in a column.
+pub fn missing_theta_i(names: &[String]) -> Error {
+    let named: Vec<String> = names
+        .iter()
+        .map(|name| shown(name))
+        .filter(|name| !name.is_empty())
+        .collect();
+    let among = if named.is_empty() {
+        String::new()
+    } else {
+        format!(" among the columns {}", named.join(", "))
+    };
+    Error::new(format!(
+        "no column theta_i_deg{among}, and neither a remark nor the name of the file gives the angle of incidence"
+    ))
+    .help("give it in degrees with --theta-i 20, or say which column it is with --columns theta_i=1")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn remarks_of_many_forms() {
+        for remark in [
+            "Incident Angle: 20",
+            "# theta_i = 20 deg",
+            "#AOI=20.0°",
+            "% angle of incidence (deg): 20",
+            "\"Incident angle [deg]\",20,,",
+            "Incident Angle\t20",
+            "! wavelength: 550 nm; AOI: 20 deg",
+            "theta_i=0.3490658503988659 rad",
+            "Incidence angle: +20,0 deg",
+        ] {
+            let facts = Facts::of(std::iter::once((1, remark)));
+            let theta_i = facts.one_theta_i().unwrap().unwrap_or_else(|| panic!("{remark}"));
+            assert!((theta_i - 20.0).abs() < 1e-12, "{remark} {theta_i}");
+        }
+        for remark in [
+            "# made at 20 deg",
+            "Name: 20",
+            "theta_s: 20",
+            "AOI: 20 mV",
+            "# theta_i theta_s brdf",
+        ] {
+            assert_eq!(
+                Facts::of(std::iter::once((1, remark))).one_theta_i().unwrap(),
+                None,
+                "{remark}"
+            );
+        }
+        let facts = Facts::of(
+            [
+                (1, "Wavelength: 0.55 µm"),
+                (2, "Polarization: s"),
+                (3, "AOI: 20"),
+                (9, "AOI: 45"),
+            ]
+            .into_iter(),
+        );
+        assert_eq!(
+            (facts.wavelength, facts.polarisation.as_deref()),
+            (Some(550.0), Some("s"))
+        );
+        let error = facts.one_theta_i().unwrap_err();
+        assert_eq!(error.line, Some(9));
+    }
+
+    #[test]
+    fn names_of_files() {
+        for (name, angle) in [
+            ("dir3/scan_20.txt", Some(20.0)),
+            ("aoi45.csv", Some(45.0)),
+            ("paint_theta_i_22.5_run3.csv", Some(22.5)),
+            ("paint7_30deg.csv", Some(30.0)),
+            ("paint_550nm_inc60.csv", Some(60.0)),
+            ("ti=10.txt", Some(10.0)),
+            ("paint_633nm_20.dat", Some(20.0)),
+            ("paint.csv", None),
+            ("paint_550nm.csv", None),
+            ("run2026.csv", None),
+        ] {
+            assert_eq!(theta_i_of_name(name).unwrap(), angle, "{name}");
+        }
+        assert!(
+            theta_i_of_name("paint7_20.csv")
+                .unwrap_err()
+                .to_string()
+                .contains("--theta-i")
+        );
+    }
+}

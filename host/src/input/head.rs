@@ -1,0 +1,163 @@
+//! What the head of a column says: its name, its unit, its coverage factor.
+
+use super::unit::Unit;
+
+/// The head of a column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    /// As it stands in the file.
+    pub text: String,
+    /// The name without unit, case, spaces and punctuation; Greek letters are spelt.
+    pub plain: String,
+    /// The unit, if it names one.
+    pub unit: Option<Unit>,
+    /// The coverage factor in `U (k=2)`.
+    pub coverage: Option<f64>,
+}
+
+impl Head {
+    /// Takes a head apart: `Theta_i [deg]`, `lambda / nm`, `BRDF (1/sr)`, `wavelength_um`, `U (k=2)`.
+    pub fn new(text: &str) -> Head {
+        let mut head = Head {
+            text: text.trim().to_string(),
+            plain: String::new(),
+            unit: None,
+            coverage: None,
+        };
+        let mut name = String::new();
+        let mut rest = text.trim();
+        while let Some((before, inside, after)) = brackets(rest) {
+            name.push_str(before);
+            rest = after;
+            if let Some(factor) = coverage(inside) {
+                head.coverage = Some(factor);
+            } else if let Some(unit) = Unit::parse(inside) {
+                head.unit = Some(unit);
+            } else {
+                // Part of the name, as in `ln(BRDF)`, and perhaps with both, as in `U (k=2, %)`.
+                let parts: Vec<&str> = inside.split([',', ';']).collect();
+                let known = |part: &&str| coverage(part).is_some() || Unit::parse(part).is_some();
+                if parts.len() > 1 && parts.iter().all(known) {
+                    for part in parts {
+                        head.coverage = coverage(part).or(head.coverage);
+                        head.unit = Unit::parse(part).or(head.unit);
+                    }
+                } else {
+                    name.push_str(&format!(" {inside} "));
+                }
+            }
+        }
+        name.push_str(rest);
+        if head.coverage.is_none() {
+            // Without brackets, as in `U k=2`.
+            if let Some((before, factor)) = name
+                .rsplit_once([' ', '_', ','])
+                .and_then(|(a, b)| Some((a, coverage(b)?)))
+            {
+                head.coverage = Some(factor);
+                name = before.to_string();
+            }
+        }
+        if head.unit.is_none() {
+            let (short, unit) = Unit::at_end(&name);
+            head.unit = unit;
+            name = short.to_string();
+        }
+        head.plain = plain(&name);
+        head
+    }
+
+    /// The same column with a unit from a line of units, which counts only where the name has none.
+    pub fn with_unit(mut self, text: &str) -> Head {
+        self.unit = self.unit.or_else(|| Unit::parse(text));
+        self
+    }
+}
+
+/// The text before the first brackets, inside them and after them.
+fn brackets(text: &str) -> Option<(&str, &str, &str)> {
+    let begin = text.find(['[', '('])?;
+    let close = if text[begin..].starts_with('[') { ']' } else { ')' };
+    let end = begin + text[begin..].find(close)?;
+    Some((&text[..begin], &text[begin + 1..end], &text[end + 1..]))
+}
+
+/// The factor in `k=2` or `k = 1.96`.
+fn coverage(text: &str) -> Option<f64> {
+    let (name, factor) = text.split_once('=')?;
+    let factor: f64 = factor.trim().parse().ok()?;
+    (name.trim().eq_ignore_ascii_case("k") && factor > 0.0 && factor.is_finite()).then_some(factor)
+}
+
+/// A name without what people write differently: case, spaces, punctuation, a unit at the end; Greek letters are spelt.
+pub fn plain(name: &str) -> String {
+    let name = Unit::at_end(name).0;
+    let mut plain = String::with_capacity(name.len());
+    let mut letters = name.chars().flat_map(char::to_lowercase).peekable();
+    while let Some(c) = letters.next() {
+        match c {
+            'θ' | 'ϑ' => plain.push_str("theta"),
+            'φ' | 'ϕ' => plain.push_str("phi"),
+            'δ' | '∆' => plain.push_str("delta"),
+            'λ' => plain.push_str("lambda"),
+            'σ' => plain.push_str("sigma"),
+            'ᵢ' => plain.push('i'),
+            'ᵣ' => plain.push('r'),
+            'ₛ' => plain.push('s'),
+            'ₒ' => plain.push('o'),
+            '₀' => plain.push('0'),
+            // A point counts within a number alone.
+            '.' if letters.peek().is_some_and(char::is_ascii_digit) => plain.push(c),
+            c if c.is_alphanumeric() => plain.push(c),
+            _ => {}
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(text: &str) -> (String, Option<Unit>, Option<f64>) {
+        let head = Head::new(text);
+        (head.plain, head.unit, head.coverage)
+    }
+
+    #[test]
+    fn name_unit_and_coverage_come_apart() {
+        let angle = |name: &str| (name.to_string(), Some(Unit::Deg), None);
+        for text in [
+            "theta_i_deg",
+            "Theta_i [deg]",
+            "THETA I (degrees)",
+            "θ_i / °",
+            "θi (°)",
+            "theta_i deg",
+            "theta_i/deg",
+        ] {
+            assert_eq!(seen(text), angle("thetai"), "{text}");
+        }
+        for text in [
+            "BRDF (1/sr)",
+            "brdf_per_sr",
+            "BRDF [sr^-1]",
+            "brdf_sr-1",
+            "BRDF (sr⁻¹)",
+            "BRDF, 1/sr",
+        ] {
+            assert_eq!(seen(text), ("brdf".to_string(), Some(Unit::PerSr), None), "{text}");
+        }
+        assert_eq!(seen("BRF (%)"), ("brf".to_string(), Some(Unit::Percent), None));
+        assert_eq!(seen("ln(BRDF)"), ("lnbrdf".to_string(), None, None));
+        assert_eq!(seen("brdf*cos(theta_s)").0, "brdfcosthetas");
+        assert_eq!(seen("U (k=2)"), ("u".to_string(), None, Some(2.0)));
+        assert_eq!(seen("U (k=2, %)"), ("u".to_string(), Some(Unit::Percent), Some(2.0)));
+        assert_eq!(seen("U_BRDF k=1.96").2, Some(1.96));
+        assert_eq!(seen("wavelength_um").1, Some(Unit::Length(1e3)));
+        assert_eq!(seen("550 nm"), ("550".to_string(), Some(Unit::Length(1.0)), None));
+        assert_eq!(seen("signal (mV)").1, Some(Unit::Foreign));
+        assert_eq!(seen("m"), ("m".to_string(), None, None));
+        assert_eq!(seen("brdf_m").1, None);
+    }
+}

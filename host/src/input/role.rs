@@ -1,0 +1,414 @@
+//! What a column holds, by the words of its name.
+
+use super::head::Head;
+use super::unit::Unit;
+use super::units::Quantity;
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// Angle of incidence.
+    ThetaI,
+    /// Scattering angle.
+    ThetaS,
+    /// A polar angle that does not say of which direction.
+    Theta,
+    /// Azimuth of incidence.
+    PhiI,
+    /// Azimuth of scattering.
+    PhiS,
+    /// Azimuth of scattering less that of incidence.
+    DeltaPhi,
+    /// An azimuth that does not say of which direction.
+    Phi,
+    /// Wavelength or wavenumber of the row.
+    Wavelength,
+    /// Polarisation of the row.
+    Polarisation,
+    /// Name of the sample or of the scan that the row is of.
+    Sample,
+    /// Unit of the value in the row.
+    Unit,
+    /// Number or time of a measurement: it tells repeated rows apart.
+    Repeat,
+    /// Values of this kind.
+    Value(Quantity),
+    /// Anything else.
+    Unknown(Look),
+}
+
+/// What an unknown column may be, to judge by its name and unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// An angle or azimuth.
+    Angle,
+    /// A wavelength.
+    Wavelength,
+    /// A polarisation.
+    Polarisation,
+    /// A sample.
+    Sample,
+    /// A unit.
+    Unit,
+    /// None of these.
+    Other,
+}
+
+/// The names of values, in the order of [`Quantity::ALL`].
+const QUANTITIES: [&[&str]; 6] = [
+    &["brdf", "bsdf", "fr", "f"],
+    &["lnbrdf", "lnfr", "lnf"],
+    &["log10brdf", "logbrdf", "log10fr", "log10f"],
+    &[
+        "brdfcos",
+        "ccbrdf",
+        "brdfcosthetas",
+        "brdfcosthetar",
+        "fcosthetas",
+        "cosinecorrectedbrdf",
+    ],
+    &[
+        "brf",
+        "reflectancefactor",
+        "radiancefactor",
+        "bidirectionalreflectancefactor",
+        "pibrdf",
+    ],
+    &["brfcos", "brfcosthetas"],
+];
+
+/// A kind of word within the name of an angle.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Word {
+    Polar,
+    Angle,
+    Azimuth,
+    Incidence,
+    Scattering,
+    Difference,
+    Filler,
+}
+
+/// Words that names of angles are made of; those of one letter count only beside the name of an angle.
+const WORDS: [(&str, Word); 92] = [
+    ("theta", Word::Polar),
+    ("zenith", Word::Polar),
+    ("zen", Word::Polar),
+    ("polar", Word::Polar),
+    ("angle", Word::Angle),
+    ("ang", Word::Angle),
+    ("phi", Word::Azimuth),
+    ("azimuthal", Word::Azimuth),
+    ("azimuth", Word::Azimuth),
+    ("azim", Word::Azimuth),
+    ("azi", Word::Azimuth),
+    ("az", Word::Azimuth),
+    ("incidence", Word::Incidence),
+    ("incident", Word::Incidence),
+    ("incoming", Word::Incidence),
+    ("inc", Word::Incidence),
+    ("input", Word::Incidence),
+    ("in", Word::Incidence),
+    ("illumination", Word::Incidence),
+    ("illuminant", Word::Incidence),
+    ("illum", Word::Incidence),
+    ("ill", Word::Incidence),
+    ("lighting", Word::Incidence),
+    ("light", Word::Incidence),
+    ("source", Word::Incidence),
+    ("src", Word::Incidence),
+    ("solar", Word::Incidence),
+    ("sun", Word::Incidence),
+    ("lamp", Word::Incidence),
+    ("laser", Word::Incidence),
+    ("beam", Word::Incidence),
+    ("i", Word::Incidence),
+    ("0", Word::Incidence),
+    ("scattering", Word::Scattering),
+    ("scattered", Word::Scattering),
+    ("scatter", Word::Scattering),
+    ("scatt", Word::Scattering),
+    ("scat", Word::Scattering),
+    ("sca", Word::Scattering),
+    ("sc", Word::Scattering),
+    ("reflection", Word::Scattering),
+    ("reflected", Word::Scattering),
+    ("reflect", Word::Scattering),
+    ("refl", Word::Scattering),
+    ("ref", Word::Scattering),
+    ("outgoing", Word::Scattering),
+    ("output", Word::Scattering),
+    ("out", Word::Scattering),
+    ("exitant", Word::Scattering),
+    ("exit", Word::Scattering),
+    ("emergence", Word::Scattering),
+    ("emergent", Word::Scattering),
+    ("emission", Word::Scattering),
+    ("emitted", Word::Scattering),
+    ("viewing", Word::Scattering),
+    ("viewer", Word::Scattering),
+    ("view", Word::Scattering),
+    ("observation", Word::Scattering),
+    ("observed", Word::Scattering),
+    ("observer", Word::Scattering),
+    ("obs", Word::Scattering),
+    ("sensor", Word::Scattering),
+    ("detection", Word::Scattering),
+    ("detector", Word::Scattering),
+    ("det", Word::Scattering),
+    ("camera", Word::Scattering),
+    ("receiving", Word::Scattering),
+    ("receiver", Word::Scattering),
+    ("receive", Word::Scattering),
+    ("rec", Word::Scattering),
+    ("measurement", Word::Scattering),
+    ("measuring", Word::Scattering),
+    ("measured", Word::Scattering),
+    ("measure", Word::Scattering),
+    ("meas", Word::Scattering),
+    ("goniometer", Word::Scattering),
+    ("s", Word::Scattering),
+    ("r", Word::Scattering),
+    ("o", Word::Scattering),
+    ("v", Word::Scattering),
+    ("e", Word::Scattering),
+    ("delta", Word::Difference),
+    ("relative", Word::Difference),
+    ("rel", Word::Difference),
+    ("difference", Word::Difference),
+    ("diff", Word::Difference),
+    ("of", Word::Filler),
+    ("the", Word::Filler),
+    ("to", Word::Filler),
+    ("normal", Word::Filler),
+    ("deg", Word::Filler),
+    ("rad", Word::Filler),
+];
+
+/// What the column of this head holds.
+pub fn role(head: &Head) -> Role {
+    let plain = head.plain.as_str();
+    if let Some(quantity) = quantity(plain) {
+        return Role::Value(quantity);
+    }
+    if let Some(role) = word(plain).or_else(|| angle(head)) {
+        return role;
+    }
+    Role::Unknown(look(head))
+}
+
+/// The quantity that values of this plain name are.
+pub fn quantity(plain: &str) -> Option<Quantity> {
+    let bare = |ending: &&str| plain.strip_suffix(*ending);
+    let plain = ["mean", "average", "avg", "value", "measured"]
+        .iter()
+        .find_map(bare)
+        .unwrap_or(plain);
+    let mut known = Quantity::ALL.into_iter().zip(QUANTITIES);
+    known
+        .find(|(_, names)| names.contains(&plain))
+        .map(|(quantity, _)| quantity)
+}
+
+/// Names of one word, and the initials of satellites' angles.
+fn word(plain: &str) -> Option<Role> {
+    Some(match plain {
+        "aoi" | "angleofinc" | "sza" | "iza" | "izenith" => Role::ThetaI,
+        "vza" | "oza" | "aor" | "aos" | "aod" => Role::ThetaS,
+        "saa" | "iaa" => Role::PhiI,
+        "vaa" | "oaa" => Role::PhiS,
+        "raa" | "dphi" | "dazimuth" | "dazi" | "daz" => Role::DeltaPhi,
+        "wavelength" | "wavelengthm" | "wavelengthi" | "wl" | "wvl" | "wavelen" | "lambda" | "lambdam" | "lam"
+        | "wave" | "wavenumber" | "laserwavelength" => Role::Wavelength,
+        "polarisation" | "polarization" | "pol" | "polstate" | "polarisationstate" | "polarizationstate" => {
+            Role::Polarisation
+        }
+        "sample" | "samplename" | "sampleid" | "sampleno" | "samplenumber" | "specimen" | "specimenid" | "material"
+        | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
+        "unit" | "units" => Role::Unit,
+        "run" | "repeat" | "repetition" | "rep" | "index" | "idx" | "no" | "nr" | "number" | "id" | "time" | "date"
+        | "datetime" | "timestamp" | "measurement" | "measurementno" | "runno" | "runid" | "point" | "row"
+        | "sweep" => Role::Repeat,
+        _ => return None,
+    })
+}
+
+/// The role of an angle whose name is made of [`WORDS`] alone.
+fn angle(head: &Head) -> Option<Role> {
+    let mut words = Vec::new();
+    // A `d` in front is a difference, and behind it the half angle of another parameterisation.
+    let (plain, difference) = match head.plain.strip_prefix('d') {
+        Some(rest) if rest.starts_with("phi") || rest.starts_with("az") || rest.starts_with("theta") => (rest, true),
+        _ => (head.plain.as_str(), false),
+    };
+    if !spell(plain, &mut words) {
+        return None;
+    }
+    let has = |word: Word| words.contains(&word);
+    let (incidence, scattering) = (has(Word::Incidence), has(Word::Scattering));
+    let difference = difference || has(Word::Difference);
+    if has(Word::Azimuth) {
+        return match (has(Word::Polar), difference, incidence, scattering) {
+            (true, ..) => None,
+            (_, true, ..) => Some(Role::DeltaPhi),
+            (_, _, false, false) => Some(Role::Phi),
+            (_, _, true, false) => Some(Role::PhiI),
+            (_, _, false, true) => Some(Role::PhiS),
+            _ => None,
+        };
+    }
+    let named = has(Word::Polar) || has(Word::Angle);
+    let in_angles = matches!(head.unit, Some(Unit::Deg | Unit::Rad));
+    match (difference, incidence, scattering) {
+        _ if !named && (!in_angles || head.plain.len() < 3) => None,
+        (true, ..) | (_, true, true) => None,
+        (_, true, false) => Some(Role::ThetaI),
+        (_, false, true) => Some(Role::ThetaS),
+        _ => named.then_some(Role::Theta),
+    }
+}
+
+/// Is the text a row of words, and of which kinds?
+fn spell(text: &str, words: &mut Vec<Word>) -> bool {
+    if text.is_empty() {
+        return !words.is_empty();
+    }
+    for (word, kind) in WORDS {
+        if let Some(rest) = text.strip_prefix(word) {
+            words.push(kind);
+            if spell(rest, words) {
+                return true;
+            }
+            words.pop();
+        }
+    }
+    false
+}
+
+/// What an unknown column looks like.
+fn look(head: &Head) -> Look {
+    const ANGLES: [&str; 15] = [
+        "theta",
+        "phi",
+        "angle",
+        "azimuth",
+        "zenith",
+        "polar",
+        "tilt",
+        "rotation",
+        "elevation",
+        "inclination",
+        "altitude",
+        "declination",
+        "yaw",
+        "pitch",
+        "roll",
+    ];
+    let has = |names: &[&str]| names.iter().any(|name| head.plain.contains(name));
+    let is = |names: &[&str]| names.contains(&head.plain.as_str());
+    if has(&["polaris", "polariz"]) {
+        return Look::Polarisation;
+    }
+    if ["sigma", "std", "u", "unc", "err"]
+        .iter()
+        .any(|word| head.plain.starts_with(word) || head.plain.ends_with(word))
+        && has(&ANGLES)
+    {
+        // The uncertainty of an angle.
+        return Look::Other;
+    }
+    if has(&ANGLES) || is(&["az", "el", "zen", "inc", "alpha", "beta", "gamma", "psi"]) {
+        return Look::Angle;
+    }
+    match head.unit {
+        Some(Unit::Deg | Unit::Rad) => return Look::Angle,
+        Some(Unit::Length(nanometres)) if nanometres < 1e6 && head.plain.parse::<f64>().is_err() => {
+            return Look::Wavelength;
+        }
+        Some(Unit::PerCm) => return Look::Wavelength,
+        _ => {}
+    }
+    if has(&["wavelength", "lambda", "wavenumber"]) {
+        Look::Wavelength
+    } else if has(&["sample", "specimen", "material", "coupon"]) {
+        Look::Sample
+    } else if has(&["unit"]) {
+        Look::Unit
+    } else {
+        Look::Other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(role: Role, names: &str) {
+        for name in names.split(", ") {
+            assert_eq!(super::role(&Head::new(name)), role, "{name}");
+        }
+    }
+
+    #[test]
+    fn angles_by_all_their_names() {
+        all(
+            Role::ThetaI,
+            "theta_i, theta_in, thetaIn, theta_inc, theta_incident, incident angle, Incidence_angle, angle of incidence, AOI, \
+             theta_source, illumination zenith angle, solar_zenith, SZA, incidence (deg), theta_0, thetai_rad, Incident_angle",
+        );
+        all(
+            Role::ThetaS,
+            "theta_s, theta_r, theta_o, theta_out, theta_sc, theta_scatter, scatter angle, scattering angle, theta_v, \
+             viewing angle, detector angle, Measure_angle, view zenith, VZA, theta_refl, angle of reflection, theta_obs",
+        );
+        all(Role::Theta, "theta, angle, zenith [deg], polar angle");
+        all(
+            Role::PhiI,
+            "phi_i, phi_in, phi_inc, azimuth_i, incident azimuth, SAA, phi_source, incidence azimuth angle",
+        );
+        all(
+            Role::PhiS,
+            "phi_s, phi_r, phi_o, phi_out, phi_v, phi_scatter, scatter azimuth, view_azimuth, azimuth_out, VAA, φ_r (°), azimuth of scattering",
+        );
+        all(
+            Role::DeltaPhi,
+            "raa, RAA [deg], relative_azimuth, delta_azimuth, azimuth_difference, phi_rel, \
+             phi_diff, delta_phi, dphi, Δφ, rel. azimuth, relative azimuth angle, d_phi",
+        );
+    }
+
+    #[test]
+    fn an_azimuth_of_no_direction() {
+        all(Role::Phi, "phi, azimuth, azimuth angle, azi, φ [deg]");
+    }
+
+    #[test]
+    fn other_columns() {
+        all(
+            Role::Wavelength,
+            "wavelength, wavelength_um, lambda [nm], λ (µm), wavenumber (cm-1), lambda/m, wavelength_m",
+        );
+        all(Role::Polarisation, "pol, polarization, Polarisation state");
+        all(Role::Sample, "sample, Sample ID, specimen, scan");
+        all(
+            Role::Value(Quantity::Brdf),
+            "BRDF, brdf_per_sr, f_r (sr⁻¹), brdf_mean, BSDF",
+        );
+        all(Role::Value(Quantity::Brf), "BRF (%), reflectance factor");
+        all(
+            Role::Unknown(Look::Angle),
+            "theta_h, phi_d, theta_d, tilt (deg), sample rotation, x (rad), phi_h, polarangle_azimuth",
+        );
+        all(Role::Unknown(Look::Wavelength), "centre wavelength of filter, x (nm)");
+        all(Role::Unknown(Look::Sample), "sample batch");
+        all(
+            Role::Unknown(Look::Polarisation),
+            "polarizer_deg, detector polarisation",
+        );
+        all(
+            Role::Unknown(Look::Other),
+            "note, temperature, u_theta_s, sigma_phi, x, R, 550 nm, in, s, det",
+        );
+        all(Role::Repeat, "run, index, time, No.");
+    }
+}

@@ -177,7 +177,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
-            return self.sums_alone(x)[0];
+            return self.scalar_sums(x)[0];
         }
         self.sums_of::<false>(x)[0]
     }
@@ -186,7 +186,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_sums(&self, x: &[R; P]) -> [R; 3] {
         if ALONE {
-            return self.sums_alone(x);
+            return self.scalar_sums(x);
         }
         self.sums_of::<true>(x)
     }
@@ -216,7 +216,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         if ALONE {
-            return self.linearize_alone(x);
+            return self.scalar_linearize(x);
         }
         let pass = M::pass(x);
         let mut squares = Aligned([R::ZERO; SUMS]);
@@ -260,7 +260,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
 /// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
-    fn sums_alone(&self, x: &[R; P]) -> [R; 3] {
+    /// [`Residuals::inlined_sums`], one lane after the other: the same bits from less code.
+    pub fn scalar_sums(&self, x: &[R; P]) -> [R; 3] {
         let pass = M::pass(x);
         let mut sums = [[R::ZERO; SUMS]; 3];
         for block in self.blocks {
@@ -275,7 +276,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         [total(&sums[0]), total(&sums[1]), total(&sums[2])]
     }
 
-    fn linearize_alone(&self, x: &[R; P]) -> Linearization<R, P> {
+    /// [`Problem::linearize`], one lane after the other.
+    pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let pass = M::pass(x);
         // In the order of `total`.
         let two = |lane| add(self.partial(&pass, lane), &self.partial(&pass, lane + 1));

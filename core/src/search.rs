@@ -28,13 +28,15 @@ pub const CANDIDATES: u32 = (ROUNDS + CYCLES * BANDS) * ROUND;
 pub const BANDS: u32 = 8;
 
 /// Candidates of a round.
-const ROUND: u32 = 16;
+const ROUND: u32 = 15;
 /// Rounds that are made in any case.
 const ROUNDS: u32 = 5;
-/// How often each part of the range of slopes is looked at where that does not settle it.
+/// After so many parts of the range of slopes a scan can be settled.
+const FIRST_BANDS: u32 = 3;
+/// How often each part is looked at where that does not settle it.
 const CYCLES: u32 = 3;
 /// How many of a round's candidates are tried by cost, and for how many of them a fit begins.
-const TRIED: usize = 8;
+const TRIED: usize = 7;
 const BEGUN: usize = 3;
 /// Candidates with the slopes of the best, and for how many of a group of them a fit begins.
 const VARIATIONS: u32 = INDICES.len() as u32;
@@ -55,7 +57,7 @@ const HOPELESS: (f64, u32) = (10.0, 10);
 const RIVAL_END: (f64, f64) = (1.1, 2.0);
 /// The same for a fit of a few passes.
 const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
-/// Rounds that must have led to the best end: after the first rounds, and after half of the parts of the range of slopes were looked at.
+/// Rounds that must have led to the best end: after the first rounds, and after the first parts of the range of slopes.
 const HITS: (u32, u32) = (2, 3);
 /// Ends that are remembered.
 const ENDS: usize = 16;
@@ -228,14 +230,14 @@ pub fn search_from<R: Real, const P: usize>(
             if round == ROUNDS {
                 unsettled = search.best_hits() < HITS.0 || search.has_rival_fit() || search.has_rival_end();
             }
-            let once = round == ROUNDS + BANDS / 2 && search.best_hits() >= HITS.1 && !search.has_rival_end();
+            let once = round == ROUNDS + FIRST_BANDS && search.best_hits() >= HITS.1 && !search.has_rival_end();
             if round >= ROUNDS && !unsettled || once {
                 break;
             }
         }
         let region = match round.checked_sub(ROUNDS) {
             Some(band) if band % (2 * BANDS) < BANDS || round < ROUNDS + CYCLES * BANDS => {
-                // The first half of them is spread over the range.
+                // The first of them are spread over the range.
                 Region::Band(band * 5 % BANDS)
             }
             _ => Region::Everywhere,

@@ -18,14 +18,16 @@ pub mod head;
 mod join;
 pub mod left_out;
 pub mod options;
+pub mod own;
 pub mod part;
+pub mod plane;
 mod polarisation;
 pub mod raw;
 mod repeats;
 pub mod role;
 mod rows;
 mod sheet;
-mod side;
+pub mod side;
 mod table;
 pub mod uncertainty;
 pub mod unit;
@@ -106,9 +108,17 @@ pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> R
     if options.one_scan {
         files = vec![join::one(files)?];
     }
+    let several = files.len() > 1;
     let mut measurements = Vec::new();
     for (file, scans) in files {
         measurements.extend(measured(&file, scans, options)?);
+    }
+    // One file an angle of incidence is most often one scan.
+    if several && measurements.iter().all(|measurement| measurement.about.one_angle) {
+        let note = "this is one angle of incidence; --one-scan takes all files as one scan".to_string();
+        measurements
+            .iter_mut()
+            .for_each(|measurement| measurement.about.notes.push(note.clone()));
     }
     Ok(measurements)
 }

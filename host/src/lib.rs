@@ -11,7 +11,7 @@
 //! | [`input`] | a file becomes one or more [`input::Measurement`]s |
 //! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
 //! | [`result`](mod@result) | a fitted scan as text, JSON or CSV |
-//! | [`plot`] | figures as SVG and PNG, from plain data |
+//! | [`plot`] | figures as SVG, from plain data |
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
 //! | [`options`] | the options that several commands have |

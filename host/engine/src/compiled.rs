@@ -28,6 +28,13 @@ pub struct Compiled {
     pub(crate) fit: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Outcome, FitError>,
     pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Found, FitError>,
     pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
+}
+
+/// What a model has only once, whatever terms are left out.
+#[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]
+#[derive(Clone, Copy, Debug)]
+pub struct Whole {
+    pub(crate) compiled: Compiled,
     pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Joint,
     pub(crate) ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
     pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Found,
@@ -52,6 +59,13 @@ pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const
         fit: fit::<M, P, C, VECTORS>,
         descend: descend::<M, P, C, VECTORS>,
         trace: trace::<M, P, C, VECTORS>,
+    }
+}
+
+/// All of model `M`.
+pub(crate) const fn whole<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Whole {
+    Whole {
+        compiled: compile::<M, P, C, VECTORS>(terms),
         joint: joint::<M, P, C, VECTORS>,
         ln_f: value::<M, P, C>,
         gradient: gradient::<M, P, C>,

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::compiled::Kernel;
 use crate::layout::Layout;
+use crate::search::single;
 use crate::{FitError, FitOptions, Values};
 
 /// Scans at most.
@@ -42,35 +43,21 @@ pub struct Fitted {
 /// # Errors
 /// The place of the scan that cannot be fitted, and why; [`FitError::TooFew`] of all samples comes with the number of scans.
 pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
-    let (compiled, options) = options.model.compiled(options).map_err(|error| (0, error))?;
+    let (model, mut options) = (options.model, *options);
+    model.hold(&mut options);
     let (both, own): (Vec<usize>, Vec<usize>) = options.free().partition(|&place| shared[place]);
     let parameters = both.len() + all.len() * own.len();
     let samples = counted(all);
     if samples < parameters {
         return Err((all.len(), FitError::TooFew(samples, parameters)));
     }
-    (compiled.joint)(all, shared, &options)
+    (model.whole.joint)(all, shared, &options)
 }
 
-/// Coordinates at most, with every parameter each scan's own: a model of six parameters needs less memory than the largest.
-const SMALL: usize = 6 * SCANS;
-const LARGE: usize = 10 * SCANS;
+/// Coordinates at most, with every parameter of the largest model each scan's own.
+const COORDINATES: usize = 8 * SCANS;
 
 pub(crate) fn run<const P: usize>(
-    scans: &[&Kernel<f64, P>],
-    own: &[Parameter; P],
-    shared: &[bool],
-    options: &FitOptions,
-    all: &[&[Sample<f64>]],
-) -> Fitted {
-    if P * scans.len() <= SMALL {
-        together::<P, SMALL>(scans, own, shared, options, all)
-    } else {
-        together::<P, LARGE>(scans, own, shared, options, all)
-    }
-}
-
-fn together<const P: usize, const Q: usize>(
     scans: &[&Kernel<f64, P>],
     own: &[Parameter; P],
     shared: &[bool],
@@ -82,11 +69,11 @@ fn together<const P: usize, const Q: usize>(
     let lm = Options::default();
     let separate: Vec<Found<f64, P>> = scans
         .par_iter()
-        .map(|scan| search(*scan, &one, options.seed, options.starts(), &lm))
+        .map(|scan| search(single(*scan), &one, options.seed, options.starts(), &lm))
         .collect();
     let is_shared: [bool; P] = layout.places.map(|place| shared[place]);
     let problem = Joint::new(scans, is_shared);
-    let bounds = problem.bounds::<f64, Q>(&one);
+    let bounds = problem.bounds::<f64, COORDINATES>(&one);
     let found = Together {
         scans,
         is_shared,
@@ -140,27 +127,27 @@ const MINIMA: usize = 4;
 const LOOPS: usize = 4;
 
 /// Scans with what each says on its own.
-struct Together<'a, const P: usize, const Q: usize> {
+struct Together<'a, const P: usize> {
     scans: &'a [&'a Kernel<'a, f64, P>],
     is_shared: [bool; P],
     one: Bounds<f64, P>,
-    bounds: Bounds<f64, Q>,
+    bounds: Bounds<f64, COORDINATES>,
     separate: &'a [Found<f64, P>],
     options: &'a FitOptions,
 }
 
-impl<'a, const P: usize, const Q: usize> Together<'a, P, Q> {
+impl<'a, const P: usize> Together<'a, P> {
     /// The best joint fit.
-    fn search(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>) -> Fit<f64, Q> {
+    fn search(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>) -> Fit<f64, COORDINATES> {
         let bests = || self.separate.iter().map(|found| found.best.x);
-        let mean: [f64; Q] = problem.join(bests());
+        let mean: [f64; COORDINATES] = problem.join(bests());
         let mut held = vec![problem.of(&mean, 0)];
         for found in self.separate {
             held.extend(found.minima.as_slice().iter().take(MINIMA).map(|minimum| minimum.x));
         }
         let ends = held.par_iter().map(|held| self.from(problem, held));
-        let ends: Vec<Fit<f64, Q>> = ends.collect();
-        let least = |fits: Vec<Fit<f64, Q>>| fits.into_iter().min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+        let ends: Vec<Fit<f64, COORDINATES>> = ends.collect();
+        let least = |fits: Vec<Fit<f64, COORDINATES>>| fits.into_iter().min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
         let mut best = least(ends).expect("the mean is a start");
         for _ in 0..LOOPS {
             let again = self.from(problem, &problem.of(&best.x, 0));
@@ -173,7 +160,7 @@ impl<'a, const P: usize, const Q: usize> Together<'a, P, Q> {
     }
 
     /// The joint fit from the best that each scan can do with the shared parameters held where `held` has them.
-    fn from(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>, held: &[f64; P]) -> Fit<f64, Q> {
+    fn from(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>, held: &[f64; P]) -> Fit<f64, COORDINATES> {
         let lm = Options::default();
         let mut bounds = self.one;
         for k in (0..P).filter(|&k| self.is_shared[k]) {
@@ -182,7 +169,7 @@ impl<'a, const P: usize, const Q: usize> Together<'a, P, Q> {
         let each = self.scans.par_iter().zip(self.separate).map(|(scan, found)| {
             let known: Vec<[f64; P]> = found.minima.as_slice().iter().map(|minimum| minimum.x).collect();
             let (seed, starts) = (self.options.seed, self.options.starts());
-            search_from(*scan, &bounds, seed, starts, &known, &lm).best.x
+            search_from(single(*scan), &bounds, seed, starts, &known, &lm).best.x
         });
         let each: Vec<[f64; P]> = each.collect();
         lm::fit(problem, &self.bounds, problem.join(each.into_iter()), &lm)

@@ -4,9 +4,9 @@ use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::{Parameter, Role};
 
-use crate::compiled::{Both, Compiled, compile, parameters_of};
+use crate::compiled::{Both, Compiled, Whole, parameters_of, whole};
 use crate::models::MODELS;
-use crate::simd::PORTABLE;
+use crate::simd::SCALAR;
 use crate::{FitError, FitOptions, Values};
 
 /// A model that scans can be fitted with, one of [`MODELS`].
@@ -22,7 +22,7 @@ pub struct Model {
     pub parameters: &'static [Parameter],
     /// The terms that can be left out of it; 0 if it is no microfacet model.
     pub terms: u8,
-    pub(crate) whole: Compiled,
+    pub(crate) whole: Whole,
     /// Sets of its terms that are compiled on their own.
     pub(crate) sets: &'static [Compiled],
 }
@@ -39,7 +39,7 @@ impl Model {
         &MODELS[0]
     }
 
-    /// A model of one's own; its passes are those of every processor.
+    /// A model of one's own; its passes go lane by lane.
     ///
     /// ```
     /// use brdfit_core::formula::Own;
@@ -60,7 +60,7 @@ impl Model {
             source,
             parameters: parameters_of::<M, P, C>(),
             terms: 0,
-            whole: compile::<M, P, C, PORTABLE>(0),
+            whole: whole::<M, P, C, SCALAR>(0),
             sets: &[],
         }
     }
@@ -161,12 +161,17 @@ impl Model {
         if let Some(set) = self.sets.iter().find(|set| set.terms == terms) {
             return Ok((set, options));
         }
+        self.hold(&mut options);
+        Ok((&self.whole.compiled, options))
+    }
+
+    /// Holds what the terms of `options` leave out at its value of absence.
+    pub(crate) fn hold(&self, options: &mut FitOptions) {
         for place in 0..self.parameters.len() {
-            if self.left_out(terms, place) {
+            if self.left_out(options.terms, place) {
                 options.lower[place] = self.absent(place);
                 options.upper[place] = self.absent(place);
             }
         }
-        Ok((&self.whole, options))
     }
 }

@@ -7,7 +7,7 @@ use brdfit_core::microfacet::Microfacet;
 use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
 
 use crate::Model;
-use crate::compiled::{Compiled, compile, parameters_of};
+use crate::compiled::{Compiled, compile, parameters_of, whole};
 use crate::simd::{AVX2, AVX512, EVERY};
 
 /// What is new in a model is said in its source; all of these are put together from Eq. 5 of the paper.
@@ -21,7 +21,7 @@ pub static MODELS: [Model; 15] = [
         source: "Bishop, Butler and Marciniak 2021, Eq. 14",
         parameters: parameters_of::<Microfacet<ALL>, 6, 6>(),
         terms: ALL,
-        whole: eq_14::<ALL, 6, EVERY>(),
+        whole: whole::<Microfacet<ALL>, 6, 6, EVERY>(ALL),
         sets: &EQ_14,
     },
     microfacet::<ALL, Beckmann, Smith, 6, 8>("beckmann-smith", "Beckmann, Smith masking", "Walter et al. 2007"),
@@ -96,7 +96,7 @@ where
         source,
         parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
         terms: ALL,
-        whole: compile::<Microfacet<TERMS, D, M>, P, C, AVX2>(ALL),
+        whole: whole::<Microfacet<TERMS, D, M>, P, C, AVX2>(ALL),
         sets: &[],
     }
 }
@@ -108,15 +108,15 @@ const A: u8 = ABSORBING;
 
 /// The sets of terms of Eq. 14 that are compiled on their own: what is left out of them costs nothing.
 static EQ_14: [Compiled; 7] = [
-    eq_14::<D, 1, AVX512>(),
-    eq_14::<{ D | S }, 4, AVX512>(),
-    eq_14::<{ D | S | A }, 5, AVX512>(),
-    eq_14::<{ D | S | V }, 5, AVX512>(),
-    eq_14::<S, 3, AVX512>(),
-    eq_14::<{ S | A }, 4, AVX512>(),
-    eq_14::<{ S | V | A }, 5, AVX512>(),
+    eq_14::<D, 1>(),
+    eq_14::<{ D | S }, 4>(),
+    eq_14::<{ D | S | A }, 5>(),
+    eq_14::<{ D | S | V }, 5>(),
+    eq_14::<S, 3>(),
+    eq_14::<{ S | A }, 4>(),
+    eq_14::<{ S | V | A }, 5>(),
 ];
 
-const fn eq_14<const TERMS: u8, const P: usize, const VECTORS: u8>() -> Compiled {
-    compile::<Microfacet<TERMS>, P, 6, VECTORS>(TERMS)
+const fn eq_14<const TERMS: u8, const P: usize>() -> Compiled {
+    compile::<Microfacet<TERMS>, P, 6, AVX512>(TERMS)
 }

@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{self, Bounds, Options, Stop};
 use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
-use brdfit_core::search::{self, Found};
+use brdfit_core::search::{self, Found, Scene};
 use rayon::prelude::*;
 
 use crate::compiled::Kernel;
@@ -75,6 +75,11 @@ pub(crate) fn descend_from<const P: usize>(
     Some((best.at.cost, layout.values(&best.x)))
 }
 
+/// A scene for one thread: searches are compiled for this type alone.
+pub(crate) fn single<'a, R, const P: usize>(scene: &'a Kernel<'a, R, P>) -> &'a (dyn Scene<R, P> + 'a) {
+    scene
+}
+
 /// The search of one scan; `exact` is the same scan in `f64`.
 pub(crate) fn run<R: Real, const P: usize>(
     scene: &Kernel<R, P>,
@@ -90,7 +95,7 @@ pub(crate) fn run<R: Real, const P: usize>(
     let starts = options.starts();
     let known: Vec<[R; P]> = known.iter().map(|values| layout.coordinates(values)).collect();
     let found: Found<R, P> = match options.method {
-        Method::Default => search::search_from(scene, &bounds, options.seed, starts, &known, &lm),
+        Method::Default => search::search_from(single(scene), &bounds, options.seed, starts, &known, &lm),
         Method::Paper => {
             let own = (0..u64::from(starts)).into_par_iter();
             let own = own.map(|i| search::paper_fit(scene, &bounds, options.seed, i, &lm));

@@ -66,16 +66,16 @@ impl PartialEq for Simd {
     }
 }
 
-/// Passes are those of every processor.
-pub const PORTABLE: u8 = 3;
-/// Passes in double precision have AVX2 beside what every processor has.
-pub const AVX2: u8 = 0;
-/// Those in double precision have AVX-512 too.
-pub const AVX512: u8 = 1;
-/// Those in single precision have both as well.
-pub const EVERY: u8 = 2;
+/// No vectors: passes go lane by lane.
+pub const SCALAR: u8 = 0;
+/// Vectors in double precision: AVX2, or what every processor has where that is not of x86-64.
+pub const AVX2: u8 = 1;
+/// Those of every processor, and in double precision AVX2 and AVX-512 too.
+pub const AVX512: u8 = 2;
+/// All of them in single precision as well.
+pub const EVERY: u8 = 3;
 
-/// A scan whose passes use `simd`, as far as `VECTORS` has them compiled: [`PORTABLE`], [`AVX2`], [`AVX512`] or [`EVERY`].
+/// A scan whose passes use `simd`, as far as `VECTORS` has them compiled: [`SCALAR`], [`AVX2`], [`AVX512`] or [`EVERY`].
 ///
 /// Each set of instructions takes time to compile, so only Eq. 14 has all: instruments that fit in single precision run their own build.
 #[derive(Debug)]
@@ -127,8 +127,13 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
     FastScan<'a, R, M, P, C, VECTORS>
 {
     const DOUBLE: bool = size_of::<R>() == size_of::<f64>();
-    const HAS_AVX2: bool = VECTORS == EVERY || VECTORS != PORTABLE && Self::DOUBLE;
+    const HAS_AVX2: bool = VECTORS == EVERY || VECTORS != SCALAR && Self::DOUBLE;
     const HAS_AVX512: bool = VECTORS == EVERY || VECTORS == AVX512 && Self::DOUBLE;
+    const HAS_PORTABLE: bool = match VECTORS {
+        SCALAR => false,
+        AVX2 => Self::DOUBLE && cfg!(not(target_arch = "x86_64")),
+        _ => true,
+    };
 
     /// A scan with the instructions that `simd` and the passes of this model have both.
     pub fn new(scan: Residuals<'a, R, M, P, C>, simd: Simd) -> Self {
@@ -140,14 +145,16 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
         FastScan { scan, simd }
     }
 
+    /// A pass with vectors, or lane by lane where there are none.
     #[inline(always)]
-    fn run<F: NullaryFnOnce>(&self, pass: F) -> F::Output {
+    fn run<F: NullaryFnOnce>(&self, pass: F, scalar: impl FnOnce() -> F::Output) -> F::Output {
         match self.simd {
             #[cfg(target_arch = "x86_64")]
             Simd::V4(simd) if const { Self::HAS_AVX512 } => simd.vectorize(pass),
             #[cfg(target_arch = "x86_64")]
             Simd::V3(simd) if const { Self::HAS_AVX2 } => simd.vectorize(pass),
-            _ => pass.call(),
+            _ if const { Self::HAS_PORTABLE } => pass.call(),
+            _ => scalar(),
         }
     }
 }
@@ -156,10 +163,10 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn cost(&self, x: &[R; P]) -> R {
-        self.run(Sums(&self.scan, x))[0]
+        self.run(Sums(&self.scan, x), || self.scan.scalar_sums(x))[0]
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        self.run(Linearize(&self.scan, x))
+        self.run(Linearize(&self.scan, x), || self.scan.scalar_linearize(x))
     }
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         self.scan.bend(x, step, to)
@@ -170,10 +177,13 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        self.run(Propose(&self.scan, bounds, seed, i, region))
+        self.run(Propose(&self.scan, bounds, seed, i, region), || {
+            self.scan.scalar_candidate(bounds, seed, i, region)
+        })
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        Residuals::<R, M, P, C>::levelled(bounds, x, self.run(Sums(&self.scan, x)))
+        let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_sums(x));
+        Residuals::<R, M, P, C>::levelled(bounds, x, sums)
     }
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
         self.scan.apart(x, y, factor)

@@ -73,13 +73,14 @@ pub(crate) fn watch<R: Real, const P: usize>(
             steps: Vec::with_capacity(256),
         }),
     };
+    let watched_scene: &dyn Scene<R, P> = &watched;
     match options.method {
         Method::Default => {
-            search::search(&watched, &bounds, options.seed, starts, &lm);
+            search::search(watched_scene, &bounds, options.seed, starts, &lm);
         }
         Method::Paper => {
-            let fit = |i| search::paper_fit(&watched, &bounds, options.seed, i, &lm);
-            search::paper(&watched, &bounds, (0..u64::from(starts)).map(fit), &lm);
+            let fit = |i| search::paper_fit(watched_scene, &bounds, options.seed, i, &lm);
+            search::paper(watched_scene, &bounds, (0..u64::from(starts)).map(fit), &lm);
         }
     }
     let elapsed_s = begun.elapsed().as_secs_f64();

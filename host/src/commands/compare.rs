@@ -34,7 +34,7 @@ pub struct Arguments {
     seed: u64,
     #[command(flatten)]
     output: OutputArguments,
-    /// Draws every model's best fit over the data, as SVG or PNG
+    /// Draws every model's best fit over the data, as SVG, or as PNG if brdfit is built with it
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -165,5 +165,5 @@ fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
             ln_f: plot::of(&outcome.material()),
         })
         .collect();
-    plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)
+    plot::overlay_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &lines)
 }

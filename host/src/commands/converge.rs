@@ -46,7 +46,7 @@ pub struct Arguments {
     terms: String,
     #[command(flatten)]
     output: OutputArguments<TableFormat>,
-    /// Draws the excess cost over the run time, as SVG or PNG
+    /// Draws the excess cost over the run time, as SVG, or as PNG if brdfit is built with it
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]

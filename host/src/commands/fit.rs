@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
-    /// Draws the scan with its distinct minima, as SVG or PNG; for one scan
+    /// Draws the scan with its distinct minima, as SVG, or as PNG if brdfit is built with it; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -101,7 +101,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             picture,
-            &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
+            &plot::scan_svg(
+                &measurement.label(),
+                &plot::Drawn::of_fit(measurement, &report.outcome).data(),
+                &curves,
+            ),
         )?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;

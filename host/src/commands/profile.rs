@@ -41,7 +41,7 @@ pub struct Arguments {
     search: SearchArguments,
     #[command(flatten)]
     output: OutputArguments,
-    /// Draws the profiles, as SVG or PNG
+    /// Draws the profiles, as SVG, or as PNG if brdfit is built with it
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
     #[command(flatten)]

@@ -35,7 +35,7 @@ pub struct Arguments {
     /// Writes the page to a file, or with - to standard output
     #[arg(short, long, visible_alias = "out", value_name = "FILE.html")]
     output: Option<PathBuf>,
-    /// Writes each figure into a folder too, as SVG and as PNG
+    /// Writes each figure into a folder too, as SVG, and as PNG if brdfit is built with it
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -174,11 +174,11 @@ fn make(folder: &Path) -> Result<(), Error> {
     Target::new(&folder.join("1-curves.svg"), &NO_INPUTS).map(drop)
 }
 
-/// Writes every figure in both forms: `1-curves.svg`, `1-curves.png` and so on, the number being that of the scan.
+/// Writes every figure in each form that pictures have: `1-curves.svg` and so on, the number being that of the scan.
 fn draw(folder: &Path, sections: &[Section], inputs: &[PathBuf]) -> Result<(), Error> {
     for (place, section) in sections.iter().enumerate() {
         for figure in &section.figures {
-            for ending in ["svg", "png"] {
+            for ending in picture::ENDINGS {
                 let name = format!("{}-{}.{ending}", place + 1, figure.name);
                 picture::save(&Target::new(&folder.join(name), inputs)?, &figure.svg)?;
             }

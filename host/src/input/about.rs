@@ -20,6 +20,10 @@ pub struct About {
     pub unused: Vec<String>,
     /// Where the angle of incidence is from.
     pub theta_i: ThetaI,
+    /// True if the file has one angle of incidence, which no column gives.
+    pub one_angle: bool,
+    /// True if the program wrote the file, so that there is no doubt about it.
+    pub settled: bool,
     /// True if a name or an option gives the unit of the angles.
     pub angles_named: bool,
     /// What the values are divided by before they are what their name says: 100 for percent.
@@ -44,6 +48,8 @@ impl Default for About {
             columns: Vec::new(),
             unused: Vec::new(),
             theta_i: ThetaI::Column,
+            one_angle: false,
+            settled: false,
             angles_named: true,
             divisor: 1.0,
             sigma_ln: None,
@@ -118,6 +124,7 @@ pub fn give_theta_i(file: &str, scan: &mut RawScan, options: &ReadOptions) -> Re
     };
     scan.rows.iter_mut().for_each(|row| row.theta_i = angle);
     scan.about.theta_i = ThetaI::Column;
+    scan.about.one_angle = true;
     scan.about
         .notes
         .push(format!("theta_i is {degrees} degrees, from {from}"));

@@ -46,6 +46,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
             Seen::Invalid { what, column } => {
                 counts.add(Reason::NotValid, degrees(row, &read_as));
                 faults.add(row.line, column, what);
+                faults.near_retro += usize::from(is_near_retro(row, &read_as));
             }
         }
     }
@@ -58,7 +59,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
             Error::new(format!("none of the {rows} rows is a valid sample")).help("check the columns, units and masks")
         );
     }
-    if options.forward.is_none() && scan.about.kind != Kind::Own {
+    if options.forward.is_none() && scan.about.kind != Kind::Own && !scan.about.settled {
         side::refuse(&samples)?;
     }
     let sigma_ln = weights.normalise(&mut samples).or(scan.about.sigma_ln);
@@ -193,6 +194,25 @@ fn masked(sample: &Sample<f64>, value: f64, options: &ReadOptions) -> Option<Rea
     None
 }
 
+/// Is a row within 8 degrees of the direction of incidence?
+fn is_near_retro(row: &Row, read_as: &ReadAs) -> bool {
+    let sign = if read_as.forward == Forward::Negative {
+        -1.0
+    } else {
+        1.0
+    };
+    let delta_phi = row.delta_phi.map_or(f64::PI, |phi| read_as.angles.azimuth(phi));
+    let sample = Sample {
+        delta_phi,
+        ..Sample::in_plane(
+            read_as.angles.radians(row.theta_i),
+            sign * read_as.angles.radians(row.theta_s),
+            0.0,
+        )
+    };
+    from_retro(&sample) <= Real::sin_cos(8f64.to_radians() / 2.0).0
+}
+
 /// Sine of half the angle between the directions of incidence and of scattering.
 fn from_retro(sample: &Sample<f64>) -> f64 {
     let half = |angle: f64| Real::sin_cos(angle / 2.0).0;
@@ -231,6 +251,8 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
 #[derive(Default)]
 struct Faults {
     count: usize,
+    /// How many are close to the direction of incidence, where a detector blocks the beam.
+    near_retro: usize,
     first: Option<(u64, Option<u64>, String)>,
     lines: Vec<String>,
 }
@@ -255,7 +277,12 @@ impl Faults {
             let lines = self.lines.join(", ");
             what += &format!(" ({} rows are not valid, on lines {lines}{more})", self.count);
         }
-        let error = Error::new(what).help("use --drop-invalid to leave such rows out");
+        let help = if 2 * self.near_retro > self.count {
+            "most are where a detector blocks the incident beam: use --mask-retro 6, or --drop-invalid to leave such rows out"
+        } else {
+            "use --drop-invalid to leave such rows out"
+        };
+        let error = Error::new(what).help(help);
         at_line(Error { column, ..error }, line)
     }
 }

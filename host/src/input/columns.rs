@@ -31,6 +31,8 @@ pub struct Columns {
     pub splits: Vec<usize>,
     /// Unit of the value in the row.
     pub unit: Option<usize>,
+    /// The standard deviation of ln f that a weight of 1 stands for, which the program writes beside weights.
+    pub sigma_ln: Option<usize>,
     /// The columns of values, each a scan of its own; at least one.
     pub values: Vec<Value>,
     /// Columns that are not used, with what they look like.
@@ -120,6 +122,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     let wavelength = finder.one("the wavelength", Role::Wavelength)?;
     let polarisation = finder.one("the polarisation", Role::Polarisation)?;
     let unit = finder.one("the unit", Role::Unit)?;
+    let sigma_ln = finder.one("the unit of weights", Role::SigmaLn)?;
     splits.extend(finder.one("the sample", Role::Sample)?);
     for &place in splits.iter().chain(&ignored) {
         finder.taken[place] = true;
@@ -160,7 +163,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     for place in uncertainty::assign(&heads, &taken, &mut values, options)? {
         taken[place] = true;
     }
-    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit];
+    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit, sigma_ln];
     let used: Vec<usize> = used.into_iter().flatten().collect();
     let unused = (0..heads.len()).filter(|&k| ignored.contains(&k) || !taken[k] && !used.contains(&k));
     let unused: Vec<(usize, Role)> = unused
@@ -177,6 +180,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
         polarisation,
         splits,
         unit,
+        sigma_ln,
         values,
         unused,
         heads,

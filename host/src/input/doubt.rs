@@ -19,6 +19,9 @@ const FEW: usize = 8;
 /// # Errors
 /// Angles in another unit, azimuths in place of scattering angles, values in percent or in no unit of a BRDF; each with the option that settles it.
 pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
+    if scan.about.settled {
+        return Ok(());
+    }
     let unit = options.angles.unwrap_or(scan.angles);
     if options.angles.is_none() {
         unit_of_angles(scan, unit)?;

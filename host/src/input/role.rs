@@ -29,6 +29,8 @@ pub enum Role {
     Sample,
     /// Unit of the value in the row.
     Unit,
+    /// The standard deviation of ln f that a weight of 1 stands for.
+    SigmaLn,
     /// Number or time of a measurement: it tells repeated rows apart.
     Repeat,
     /// Values of this kind.
@@ -226,6 +228,7 @@ fn word(plain: &str) -> Option<Role> {
         "sample" | "samplename" | "sampleid" | "sampleno" | "samplenumber" | "specimen" | "specimenid" | "material"
         | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
         "unit" | "units" => Role::Unit,
+        "sigmaln" => Role::SigmaLn,
         "run" | "repeat" | "repetition" | "rep" | "index" | "idx" | "no" | "nr" | "number" | "id" | "time" | "date"
         | "datetime" | "timestamp" | "measurement" | "measurementno" | "runno" | "runid" | "point" | "row"
         | "sweep" => Role::Repeat,

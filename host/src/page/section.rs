@@ -1,7 +1,5 @@
 //! One scan: its fit, the fits from all starts, and what is drawn of both.
 
-use brdfit_core::geometry::Sample;
-
 use super::provenance::Source;
 use crate::analysis::derived::{self, Value};
 use crate::analysis::fit::{FittedScan, fit};
@@ -70,7 +68,12 @@ impl Section {
         Ok(Section {
             label: measurement.label(),
             source: source.clone(),
-            figures: figures(&samples, &report, &survey.minima, starts),
+            figures: figures(
+                &plot::Drawn::of_fit(measurement, &report.outcome).data(),
+                &report,
+                &survey.minima,
+                starts,
+            ),
             report,
             searched,
             survey,
@@ -84,7 +87,7 @@ impl Section {
     }
 }
 
-fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
+fn figures(data: &plot::Data, report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
     let outcome = &report.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let material = outcome.material();
@@ -102,17 +105,17 @@ fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], sta
     vec![
         Figure {
             name: "curves",
-            svg: plot::scan_svg("", samples, &curves),
-            caption: "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+            svg: plot::scan_svg("", data, &curves),
+            caption: "Measured BRDF (dots; grey crosses were left out), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
         },
         Figure {
             name: "residuals",
-            svg: plot::residuals_svg(samples, &material, outcome.uncertainty.scale),
+            svg: plot::residuals_svg(data.samples, &material, outcome.uncertainty.scale),
             caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
         },
         Figure {
             name: "polar",
-            svg: plot::polar_svg(samples, &material),
+            svg: plot::polar_svg(data.samples, &material),
             caption: "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
         },
         Figure {

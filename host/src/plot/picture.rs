@@ -2,33 +2,28 @@
 
 use std::path::PathBuf;
 
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree};
-
 use crate::error::Error;
 use crate::target::Target;
 
-/// Pixels of a PNG for one of the SVG: 1800 across, 15 cm at 300 dpi.
-const SCALE: f32 = 2.0;
+/// The endings that pictures can have, in the order in which a report writes them.
+pub const ENDINGS: &[&str] = if cfg!(feature = "png") {
+    &["svg", "png"]
+} else {
+    &["svg"]
+};
 
-/// With their own font, pictures have the same letters on every machine, and some where there are no fonts at all.
-const FONTS: [&[u8]; 3] = [
-    include_bytes!("font/DejaVuSansCondensed.ttf"),
-    include_bytes!("font/DejaVuSansCondensed-Bold.ttf"),
-    include_bytes!("font/DejaVuSansCondensed-Oblique.ttf"),
-];
-
-/// Accepts the name of a picture: `.svg`, `.png`, or no ending, which stands for SVG.
+/// Accepts the name of a picture: `.svg`, with the feature `png` also `.png`, or no ending, which stands for SVG.
 ///
 /// # Errors
 /// Another ending.
 pub fn name(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    match path.extension().map(|ending| ending.to_ascii_lowercase()) {
-        Some(ending) if ending != "svg" && ending != "png" => {
-            Err("a picture is SVG or PNG; let it end in .svg or .png".to_string())
-        }
-        _ => Ok(path),
+    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    match ending.as_deref().and_then(|ending| ending.to_str()) {
+        None | Some("svg") => Ok(path),
+        Some("png") if cfg!(feature = "png") => Ok(path),
+        Some("png") => Err("this program is built without PNG; take .svg, or build it with --features png".to_string()),
+        Some(_) => Err(format!("a picture is {}; let it end in .svg", ENDINGS.join(" or "))),
     }
 }
 
@@ -49,9 +44,22 @@ pub fn save(target: &Target, svg: &str) -> Result<(), Error> {
 }
 
 /// The bytes of a PNG.
+#[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, Error> {
+    use resvg::tiny_skia::{Pixmap, Transform};
+    use resvg::usvg::{Options, Tree};
+
+    /// Pixels of a PNG for one of the SVG: 1800 across, 15 cm at 300 dpi.
+    const SCALE: f32 = 2.0;
+    /// With their own font, pictures have the same letters on every machine, and some where there are no fonts at all.
+    const FONTS: [&[u8]; 3] = [
+        include_bytes!("font/DejaVuSansCondensed.ttf"),
+        include_bytes!("font/DejaVuSansCondensed-Bold.ttf"),
+        include_bytes!("font/DejaVuSansCondensed-Oblique.ttf"),
+    ];
+
     let fail = |why: &dyn std::fmt::Display| {
-        Error::new(format!("the picture can not be drawn: {why}")).help("write it as .svg")
+        Error::new(format!("the picture cannot be drawn: {why}")).help("write it as .svg")
     };
     let mut options = Options::default();
     for font in FONTS {
@@ -64,4 +72,9 @@ fn png(svg: &str) -> Result<Vec<u8>, Error> {
     let mut canvas = canvas.ok_or_else(|| fail(&"it is too large"))?;
     resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut canvas.as_mut());
     canvas.encode_png().map_err(|error| fail(&error))
+}
+
+#[cfg(not(feature = "png"))]
+fn png(_svg: &str) -> Result<Vec<u8>, Error> {
+    Err(Error::new("this program is built without PNG").help("take .svg, or build it with --features png"))
 }

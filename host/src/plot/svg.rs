@@ -50,6 +50,28 @@ pub fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>) {
     out.push_str("\"/>");
 }
 
+/// Grey crosses, for what was left out.
+pub fn crosses(out: &mut String, points: impl Iterator<Item = (f64, f64)>) {
+    let mut points = points.peekable();
+    if points.peek().is_none() {
+        return;
+    }
+    out.push_str("<path stroke=\"#999\" stroke-width=\"1.1\" d=\"");
+    for (x, y) in points {
+        let _ = write!(out, "M{:.1} {:.1}l5 5m-5 0l5-5", x - 2.5, y - 2.5);
+    }
+    out.push_str("\"/>");
+}
+
+/// Small rings, for a model where a line cannot go.
+pub fn rings(out: &mut String, style: &str, points: impl Iterator<Item = (f64, f64)>) {
+    let _ = write!(out, "<path {style} style=\"stroke-width:1\" d=\"");
+    for (x, y) in points {
+        let _ = write!(out, "M{:.1} {y:.1}a2 2 0 1 0 4 0a2 2 0 1 0-4 0", x - 2.0);
+    }
+    out.push_str("\"/>");
+}
+
 /// The step from the last point, in tenths of a pixel, to `point`.
 fn relative(last: &mut (i64, i64), point: (f64, f64)) -> String {
     let tenths = |v: f64| (v * 10.0).round() as i64;

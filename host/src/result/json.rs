@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
+use crate::analysis::hints::Hint;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::output;
@@ -41,6 +42,9 @@ struct Document<'a> {
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
     evaluations: Evaluations,
+    /// What a person would say.
+    #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
+    hints: &'a [Hint],
     #[serde(flatten)]
     time: Columns<'a>,
 }
@@ -106,6 +110,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
+        hints: &scan.hints,
         time: Columns(scan, Json::Time),
     }
 }

@@ -99,6 +99,9 @@ fn page(report: &FittedScan, minima: bool) -> String {
     for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &report.derived, weighted) {
         line(known);
     }
+    for hint in &report.hints {
+        line(format!("  hint       {}", hint.text));
+    }
     if minima {
         page += &minima_table(outcome, &outcome.minima);
     }

@@ -6,7 +6,7 @@ use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::Material;
 use crate::engine::uncertainty::Uncertainty;
-use crate::number::{percent, short};
+use crate::number::{digits, percent, short};
 use crate::result::words::{sentence, shown};
 
 /// Correlations from this on are listed.
@@ -110,7 +110,7 @@ fn table(derived: &[Derived]) -> Vec<String> {
             "  ABOVE 1: energy is not conserved"
         };
         lines.push(row([
-            short(at.theta_i.to_degrees()),
+            digits(at.theta_i.to_degrees()),
             at.rho_s_f.map_or_else(none, shown),
             at.rho_v_f.map_or_else(none, shown),
             peak.map_or_else(none, |peak| {

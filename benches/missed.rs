@@ -1,6 +1,7 @@
 //! How often the default search misses the optimum, by kind of scan, and what more candidates buy.
 //!
 //! `cargo bench --bench missed -- --write` writes `benches/results/search.md`.
+//! `--scans N` takes N scans of each kind, in place of 1667.
 //! The least costs that thorough methods find are kept in `target/missed`; making them takes an hour on two cores.
 //! Without cargo's own `--bench`, as in `cargo test --benches`, only a small part is done.
 
@@ -19,11 +20,20 @@ const EFFORT_SCANS: u64 = 100;
 
 fn main() {
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
-    let (scans, seeds) = if asked("--bench") { (1667, 3) } else { (1, 1) };
+    let number = std::env::args().skip_while(|argument| argument != "--scans").nth(1);
+    let number = number.map(|number| number.parse().expect("--scans takes a number"));
+    let (scans, seeds) = if asked("--bench") {
+        (number.unwrap_or(1667), 3)
+    } else {
+        (1, 1)
+    };
     let root: PathBuf = env!("CARGO_MANIFEST_DIR").into();
     let mut known = KINDS.map(|kind| Known::read(&root.join("target/missed"), kind));
     for (kind, known) in KINDS.iter().zip(&mut known) {
-        let more: Vec<f64> = (known.len()..scans).into_par_iter().map(|k| thorough(*kind, k)).collect();
+        let more: Vec<f64> = (known.len()..scans)
+            .into_par_iter()
+            .map(|k| thorough(*kind, k))
+            .collect();
         more.into_iter().for_each(|cost| known.push(cost));
     }
     let table = text(&mut known, scans, seeds);
@@ -45,7 +55,7 @@ fn text(known: &mut [Known], scans: u64, seeds: u64) -> String {
     out.push_str("A pass without derivatives counts half; until 1 %: the median of the passes until the cost is within 1 % of the least.\n");
     out.push_str("Single: any of the other kinds in single precision; its end is judged after a fit in double precision from there.\n");
     out.push_str("What other designs missed: `search_designs.md`.\n");
-    out.push_str("Regenerate: `cargo bench --bench missed -- --write`.\n\n");
+    let _ = writeln!(out, "Regenerate: `cargo bench --bench missed -- --write --scans {scans}`.\n");
     out.push_str("| kind | searches | missed | passes, mean | passes, most | until 1 % |\n|---|--:|--:|--:|--:|--:|\n");
     let rows: Vec<Row> = KINDS
         .iter()
@@ -61,7 +71,11 @@ fn text(known: &mut [Known], scans: u64, seeds: u64) -> String {
     let list: Vec<String> = KINDS
         .iter()
         .zip(&rows)
-        .flat_map(|(kind, row)| row.missed.iter().map(move |(k, excess)| format!("{kind:?} {k} (+{excess:.1e})")))
+        .flat_map(|(kind, row)| {
+            row.missed
+                .iter()
+                .map(move |(k, excess)| format!("{kind:?} {k} (+{excess:.1e})"))
+        })
         .collect();
     if !list.is_empty() {
         let _ = writeln!(out, "\nMissed, with the excess: {}.", list.join(", "));
@@ -87,7 +101,11 @@ fn efforts(out: &mut String, known: &mut [Known], scans: u64) {
         let fits: usize = rows.iter().map(|row| row.fits).sum();
         let missed: usize = rows.iter().map(|row| row.missed.len()).sum();
         let passes: f64 = rows.iter().map(|row| row.mean * row.fits as f64).sum();
-        let _ = writeln!(out, "| {candidates} | {fits} | {missed} | {:.0} |", passes / fits as f64);
+        let _ = writeln!(
+            out,
+            "| {candidates} | {fits} | {missed} | {:.0} |",
+            passes / fits as f64
+        );
     }
 }
 

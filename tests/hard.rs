@@ -97,7 +97,11 @@ fn a_profile_that_meets_a_better_fit_goes_on_from_there() {
     let before = poor.cost;
     let found = profiles(&samples, &all, poor, &[3], 0).unwrap();
     assert_eq!(found.improved_from, Some(before));
-    assert!(found.outcome.cost < CASES[4].1 * (1.0 + DIGITS), "{}", found.outcome.cost);
+    assert!(
+        found.outcome.cost < CASES[4].1 * (1.0 + DIGITS),
+        "{}",
+        found.outcome.cost
+    );
     let profile = &found.list[0];
     for point in &profile.points {
         assert!(point.cost >= profile.best.cost && point.cost >= found.outcome.cost * (1.0 - 1e-6));
@@ -108,7 +112,12 @@ fn a_profile_that_meets_a_better_fit_goes_on_from_there() {
 
 #[test]
 fn richer_terms_never_cost_more() {
-    for (kind, k) in [(Kind::Misfit, 0), (Kind::Sparse, 1), (Kind::Rough, 2), (Kind::Lambert, 3)] {
+    for (kind, k) in [
+        (Kind::Misfit, 0),
+        (Kind::Sparse, 1),
+        (Kind::Rough, 2),
+        (Kind::Lambert, 3),
+    ] {
         let options = FitOptions {
             choose_terms: true,
             starts: Some(1),
@@ -120,7 +129,12 @@ fn richer_terms_never_cost_more() {
         for rich in &candidates {
             for poor in candidates.iter().filter(|poor| poor.terms & !rich.terms == 0) {
                 let (high, low) = (rich.cost, poor.cost);
-                assert!(high <= low * (1.0 + 1e-9), "{kind:?} {k}: {:#b} {high}, {:#b} {low}", rich.terms, poor.terms);
+                assert!(
+                    high <= low * (1.0 + 1e-9),
+                    "{kind:?} {k}: {:#b} {high}, {:#b} {low}",
+                    rich.terms,
+                    poor.terms
+                );
             }
         }
     }
@@ -150,7 +164,10 @@ fn translated_values_give_the_same_curve() {
         let translated = large.translated(small, &values);
         for theta_s in [-60.0f64, -20.0, 30.0, 41.0, 75.0] {
             let sample = Sample::in_plane(0.6, theta_s.to_radians(), 1.0);
-            let (a, b) = (small.ln_f(&values, &sample).unwrap(), large.ln_f(&translated, &sample).unwrap());
+            let (a, b) = (
+                small.ln_f(&values, &sample).unwrap(),
+                large.ln_f(&translated, &sample).unwrap(),
+            );
             assert!((a - b).abs() < 1e-12, "{} in {}: {a}, {b}", small.name, large.name);
         }
     }
@@ -174,7 +191,10 @@ fn a_model_that_contains_another_never_ends_above_it() {
         };
         for (small, large) in NESTED {
             let (low, high) = (mse2(small), mse2(large));
-            assert!(high <= low * (1.0 + 1e-9), "{kind:?} {k}: {large} {high}, {small} {low}");
+            assert!(
+                high <= low * (1.0 + 1e-9),
+                "{kind:?} {k}: {large} {high}, {small} {low}"
+            );
         }
     }
 }
@@ -188,7 +208,10 @@ fn joint_fits_find_the_optimum() {
     assert!((fitted.scans[0][3] - 0.0451).abs() < 1e-4, "m {}", fitted.scans[0][3]);
     for (values, errors) in fitted.scans.iter().zip(&fitted.errors) {
         for (value, error) in values.iter().zip(errors) {
-            assert!(error.is_none_or(|error| error <= value.max(1.0)), "{value} +- {error:?}");
+            assert!(
+                error.is_none_or(|error| error <= value.max(1.0)),
+                "{value} +- {error:?}"
+            );
         }
     }
 }
@@ -199,7 +222,10 @@ fn joint_fits_refuse_fewer_samples_than_parameters() {
     let few = "theta_i,theta_s,brdf\n30,-20,0.1\n30,0,0.12\n30,20,0.3\n30,30,0.5\n30,40,0.3\n";
     let files = ["a.csv", "b.csv"].map(|name| write(&folder, name, few));
     let error = fail(&["joint", &files[0], &files[1]]);
-    assert!(error.contains("10 samples") && error.contains("11 parameters"), "{error}");
+    assert!(
+        error.contains("10 samples") && error.contains("11 parameters"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -207,11 +233,21 @@ fn a_report_takes_the_better_fit_of_the_papers_method() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("page.html");
     let file = data("hard/slab010.csv");
-    let arguments = ["report", file.to_str().unwrap(), "--starts", "1", "-o", page.to_str().unwrap()];
+    let arguments = [
+        "report",
+        file.to_str().unwrap(),
+        "--starts",
+        "1",
+        "-o",
+        page.to_str().unwrap(),
+    ];
     let ran = brdfit(&arguments, b"");
     assert_eq!(ran.code, 0, "{}", ran.errors);
     let page = std::fs::read_to_string(page).unwrap();
     // 80.1278 over the square of 171 samples.
-    assert!(page.contains("2.7403e-3") || page.contains("0.0027403") || page.contains("2.740e-3"), "the optimum is not there");
+    assert!(
+        page.contains("2.7403e-3") || page.contains("0.0027403") || page.contains("2.740e-3"),
+        "the optimum is not there"
+    );
     assert!(page.contains("ended below what the search had found"));
 }

@@ -35,13 +35,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
     /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_candidate(
-        &self,
-        bounds: &Bounds<R, P>,
-        seed: u64,
-        i: u64,
-        region: Region<R, P>,
-    ) -> Candidate<R, P> {
+    pub fn inlined_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         self.propose::<ALONE>(bounds, seed, i, region)
     }
 

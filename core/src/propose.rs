@@ -111,9 +111,7 @@ fn slope<R: Real, const P: usize>(
     let of_pair = || pair(seen, [numbers[0], numbers[1], numbers[2]]);
     match region {
         Region::Index(like) => like[k],
-        Region::Slopes(like) => {
-            of_pair().unwrap_or_else(|| like[k] * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp())
-        }
+        Region::Slopes(like) => of_pair().unwrap_or_else(|| like[k] * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp()),
         Region::Everywhere if numbers[4] < R::of(PAIRS) => of_pair().unwrap_or(spread),
         _ => spread,
     }

@@ -82,6 +82,7 @@ pub struct Candidate<R, const P: usize> {
 
 /// Where a candidate is looked for.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Region<'a, R, const P: usize> {
     /// Everywhere within the bounds.
     Everywhere,
@@ -222,46 +223,8 @@ pub fn search_from<R: Real, const P: usize>(
         search.converge(&mut fit, start);
         search.evaluations.linearize += fit.passes;
     }
-    let mut unsettled = false;
-    let mut made = 0;
-    while made < candidates.max(1) {
-        let round = search.round;
-        if candidates <= CANDIDATES {
-            if round == ROUNDS {
-                unsettled = search.best_hits() < HITS.0 || search.has_rival_fit() || search.has_rival_end();
-            }
-            let once = round == ROUNDS + FIRST_BANDS && search.best_hits() >= HITS.1 && !search.has_rival_end();
-            if round >= ROUNDS && !unsettled || once {
-                break;
-            }
-        }
-        let region = match round.checked_sub(ROUNDS) {
-            Some(band) if band % (2 * BANDS) < BANDS || round < ROUNDS + CYCLES * BANDS => {
-                // The first of them are spread over the range.
-                Region::Band(band * 5 % BANDS)
-            }
-            _ => Region::Everywhere,
-        };
-        let end = made.saturating_add(ROUND).min(candidates.max(1));
-        search.round(made..end, region, BEGUN);
-        made = end;
-    }
-    unsettled |= candidates > CANDIDATES;
-    for again in 0..LOOPS {
-        let Some(before) = search.best else { break };
-        let mut start = again * VARIATIONS;
-        for group in GROUPS {
-            let end = again * VARIATIONS + group;
-            search.round(start..end, Region::Index(&before.x), GROUP_BEGUN);
-            start = end;
-        }
-        if unsettled {
-            search.round(again * SLOPES..(again + 1) * SLOPES, Region::Slopes(&before.x), SLOPES_BEGUN);
-        }
-        if !search.best.is_some_and(|best| best.at.cost < before.at.cost * R::of(1.0 - 1e-6)) {
-            break;
-        }
-    }
+    let unsettled = search.rounds(candidates);
+    search.variations(unsettled);
     let Search {
         best,
         mut minima,
@@ -275,6 +238,17 @@ pub fn search_from<R: Real, const P: usize>(
     evaluations.linearize += best.passes - before;
     minima.refine(&best);
     Found::new(best, minima, evaluations)
+}
+
+/// Where the candidates of a round are looked for: everywhere at first, and then in one part of the range of slopes after the other.
+fn region<'a, R, const P: usize>(round: u32) -> Region<'a, R, P> {
+    match round.checked_sub(ROUNDS) {
+        Some(band) if band % (2 * BANDS) < BANDS || band < CYCLES * BANDS => {
+            // The first of them are spread over the range.
+            Region::Band(band * 5 % BANDS)
+        }
+        _ => Region::Everywhere,
+    }
 }
 
 /// Where fits have ended; unlike a distinct minimum, one for each cost.
@@ -304,6 +278,52 @@ struct Search<'a, R, S: ?Sized, const P: usize> {
 }
 
 impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
+    /// Rounds until the scan is settled or `candidates` are made; true if it is not settled.
+    fn rounds(&mut self, candidates: u32) -> bool {
+        let ends_early = candidates <= CANDIDATES;
+        let mut unsettled = !ends_early;
+        let mut made = 0;
+        while made < candidates.max(1) {
+            let round = self.round;
+            if ends_early && round == ROUNDS {
+                unsettled = self.best_hits() < HITS.0 || self.has_rival_fit() || self.has_rival_end();
+            }
+            let settled = if round == ROUNDS + FIRST_BANDS {
+                !unsettled || self.best_hits() >= HITS.1 && !self.has_rival_end()
+            } else {
+                round >= ROUNDS && !unsettled
+            };
+            if ends_early && settled {
+                break;
+            }
+            let end = made.saturating_add(ROUND).min(candidates.max(1));
+            self.round(made..end, region(round), BEGUN);
+            made = end;
+        }
+        unsettled
+    }
+
+    /// Variations of the best, and again of a better one that they lead to.
+    fn variations(&mut self, unsettled: bool) {
+        for again in 0..LOOPS {
+            let Some(before) = self.best else { return };
+            let mut start = again * VARIATIONS;
+            for group in GROUPS {
+                let end = again * VARIATIONS + group;
+                self.round(start..end, Region::Index(&before.x), GROUP_BEGUN);
+                start = end;
+            }
+            if unsettled {
+                let slopes = again * SLOPES..(again + 1) * SLOPES;
+                self.round(slopes, Region::Slopes(&before.x), SLOPES_BEGUN);
+            }
+            let least = before.at.cost * R::of(1.0 - 1e-6);
+            if !self.best.is_some_and(|best| best.at.cost < least) {
+                return;
+            }
+        }
+    }
+
     /// Candidates by rank, the best of them by cost, short fits of the best of those, convergence of the best of these.
     fn round(&mut self, indices: Range<u32>, region: Region<R, P>, begun: usize) {
         self.round += 1;

@@ -129,7 +129,11 @@ pub fn row(known: &Known, ended: &[(u64, Ended)]) -> Row {
     until.sort_by(f64::total_cmp);
     Row {
         fits: ended.len(),
-        missed: ended.iter().map(excess).filter(|&(_, excess)| excess > MISSED).collect(),
+        missed: ended
+            .iter()
+            .map(excess)
+            .filter(|&(_, excess)| excess > MISSED)
+            .collect(),
         mean: ended.iter().map(|(_, ended)| ended.passes).sum::<f64>() / ended.len().max(1) as f64,
         most: ended.iter().map(|(_, ended)| ended.passes).fold(0.0, f64::max),
         until: until.get(until.len() / 2).copied().unwrap_or(f64::NAN),

@@ -83,7 +83,9 @@ impl Section {
 
     /// Did a start of the survey end lower than the search, by more than rounding?
     pub fn missed(&self) -> bool {
-        self.report.improved_from.is_some_and(|before| self.report.outcome.cost < before * (1.0 - 1e-6))
+        self.report
+            .improved_from
+            .is_some_and(|before| self.report.outcome.cost < before * (1.0 - 1e-6))
     }
 }
 

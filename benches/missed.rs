@@ -55,7 +55,10 @@ fn text(known: &mut [Known], scans: u64, seeds: u64) -> String {
     out.push_str("A pass without derivatives counts half; until 1 %: the median of the passes until the cost is within 1 % of the least.\n");
     out.push_str("Single: any of the other kinds in single precision; its end is judged after a fit in double precision from there.\n");
     out.push_str("What other designs missed: `search_designs.md`.\n");
-    let _ = writeln!(out, "Regenerate: `cargo bench --bench missed -- --write --scans {scans}`.\n");
+    let _ = writeln!(
+        out,
+        "Regenerate: `cargo bench --bench missed -- --write --scans {scans}`.\n"
+    );
     out.push_str("| kind | searches | missed | passes, mean | passes, most | until 1 % |\n|---|--:|--:|--:|--:|--:|\n");
     let rows: Vec<Row> = KINDS
         .iter()

@@ -34,20 +34,20 @@ pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2:
         let (Some(tan2), Some(cos)) = (block.columns.get(tan2), block.columns.get(cos)) else {
             continue;
         };
-        for (lane, weight) in block.weight.iter().enumerate() {
-            if !(*weight > R::ZERO) {
+        for (lane, (&tan2, &cos)) in tan2.iter().zip(cos).enumerate() {
+            if !(block.weight[lane] > R::ZERO) {
                 continue;
             }
-            let mut sample = (tan2[lane], block.ln_f[lane]);
+            let mut sample = (tan2, block.ln_f[lane]);
             if sample.0 < peak.near[0].0 {
-                peak.cos_theta_d = cos[lane];
+                peak.cos_theta_d = cos;
             }
             for place in &mut peak.near {
                 if sample.0 < place.0 {
                     core::mem::swap(place, &mut sample);
                 }
             }
-            let mut tan2 = tan2[lane];
+            let mut tan2 = tan2;
             for place in &mut nearest {
                 if R::of(SPECULAR) < tan2 && tan2 < *place {
                     core::mem::swap(place, &mut tan2);
@@ -61,7 +61,7 @@ pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2:
 
 /// F at the peak of each lobe with one index (n, kappa^2), over that with another; 1 where the other has none.
 pub(crate) fn ratio<R: Real>(from: [R; 2], to: [R; 2], peaks: Pack<R, 2>) -> Pack<R, 2> {
-    let [from, to] = [from, to].map(|[n, kappa2]| Index::new(n, kappa2).reflect::<2, false>(peaks).f);
+    let [from, to] = [from, to].map(|[n, kappa2]| Index::new(n, kappa2).reflect::<2>(peaks, false).f);
     from.zip(to, |from, to| if to > R::TINY { from / to } else { R::ONE })
 }
 
@@ -115,12 +115,12 @@ pub(crate) fn bend<R: Real, const P: usize>(
             *value += more;
         }
     }
-    let from = Index::new(old_n, old_kappa2).reflect::<2, true>(peaks);
+    let from = Index::new(old_n, old_kappa2).reflect(peaks, true);
     let (new_n, new_kappa2) = (
         at(&bent, n, R::ONE).max(R::ONE),
         at(&bent, kappa2, R::ZERO).max(R::ZERO),
     );
-    let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
+    let there = Index::new(new_n, new_kappa2).reflect(peaks, false);
     let d_n2 = R::of(2.0) * old_n * d_n;
     for (place, lobe) in weights {
         // So the compiler sees that no index is out of range.

@@ -20,6 +20,7 @@
 //! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |
 //! | models of stray light | [`models::Abg`] and others | `models.rs` | |
 //! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
+//! | the same without vectors | | `scalar.rs` | |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
@@ -47,6 +48,7 @@ pub mod pack;
 mod propose;
 pub mod real;
 pub mod residuals;
+mod scalar;
 pub mod search;
 pub mod start;
 pub mod uncertainty;

@@ -6,7 +6,7 @@ use crate::brdf::{Params, get, has, slot};
 use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::microfacet::Microfacet;
-use crate::model::{GROUP, Model, Parameter, SUMS, Seen};
+use crate::model::{GROUP, Model, Parameter, SUMS, Seen, Want};
 use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
@@ -81,13 +81,14 @@ pub fn observe<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
 
 /// ln f of model `M` at the solver's coordinates `x` in the directions of `geometry` ([`Model::geometry`]), f in sr^-1.
 pub fn value<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> R {
-    M::row::<false>(&M::pass(x), &Block::of(geometry)).ln_f.0[0]
+    M::row(&M::pass(x), &Block::of(geometry), 0, Want::Value, &mut [R::ZERO; P])
 }
 
 /// The same, and its derivatives by the solver's coordinates.
 pub fn ln_f<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> (R, [R; P]) {
-    let rows = M::row::<true>(&M::pass(x), &Block::of(geometry));
-    (rows.ln_f.0[0], rows.gradient.map(|column| column.0[0]))
+    let mut gradient = [R::ZERO; P];
+    let ln_f = M::row(&M::pass(x), &Block::of(geometry), 0, Want::Gradient, &mut gradient);
+    (ln_f, gradient)
 }
 
 impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'a, R, M, P, C> {
@@ -177,23 +178,23 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     pub fn inlined_cost(&self, x: &[R; P]) -> R {
         if ALONE {
-            return self.scalar_sums(x)[0];
+            return self.scalar_cost(x);
         }
-        self.sums_of::<false>(x)[0]
+        self.totals_of::<false>(x)[0]
     }
 
     /// The sums of r^2, w r and w^2 over the residuals r = w (ln f - measured), of weight w, compiled into its caller.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_sums(&self, x: &[R; P]) -> [R; 3] {
+    pub fn inlined_totals(&self, x: &[R; P]) -> [R; 3] {
         if ALONE {
-            return self.scalar_sums(x);
+            return self.scalar_totals(x);
         }
-        self.sums_of::<true>(x)
+        self.totals_of::<true>(x)
     }
 
-    /// These sums; the second and the third only if `ALL`.
+    /// These; the second and the third only if `ALL`.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn sums_of<const ALL: bool>(&self, x: &[R; P]) -> [R; 3] {
+    fn totals_of<const ALL: bool>(&self, x: &[R; P]) -> [R; 3] {
         let pass = M::pass(x);
         let mut sums = [[R::ZERO; SUMS]; 3];
         for block in self.blocks {
@@ -256,83 +257,6 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         }
         sums
     }
-}
-
-/// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
-    /// [`Residuals::inlined_sums`], one lane after the other: the same bits from less code.
-    pub fn scalar_sums(&self, x: &[R; P]) -> [R; 3] {
-        let pass = M::pass(x);
-        let mut sums = [[R::ZERO; SUMS]; 3];
-        for block in self.blocks {
-            for lane in 0..SUMS {
-                let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(&pass, block, lane));
-                let [v, w] = Pack::<R, GROUP>::gather(&block.weight, lane).0;
-                sums[0][lane] += a * a + b * b;
-                sums[1][lane] += a * v + b * w;
-                sums[2][lane] += v * v + w * w;
-            }
-        }
-        [total(&sums[0]), total(&sums[1]), total(&sums[2])]
-    }
-
-    /// [`Problem::linearize`], one lane after the other.
-    pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        let pass = M::pass(x);
-        // In the order of `total`.
-        let two = |lane| add(self.partial(&pass, lane), &self.partial(&pass, lane + 1));
-        let four = |lane| add(two(lane), &two(lane + 2));
-        let mut sums = add(four(0), &four(4));
-        for i in 0..P {
-            for j in 0..i {
-                sums.hessian[j][i] = sums.hessian[i][j];
-            }
-        }
-        sums
-    }
-
-    /// The sums over one of the first eight lanes, and its other half, of all blocks; of J'J the lower half.
-    #[inline(never)]
-    fn partial(&self, pass: &M::Pass, lane: usize) -> Linearization<R, P> {
-        let mut sums = Linearization::zero();
-        for block in self.blocks {
-            let [(a, a_row), (b, b_row)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(pass, block, lane));
-            sums.cost += a * a + b * b;
-            for i in 0..P {
-                sums.gradient[i] += a_row[i] * a + b_row[i] * b;
-                for j in 0..=i {
-                    sums.hessian[i][j] += a_row[i] * a_row[j] + b_row[i] * b_row[j];
-                }
-            }
-        }
-        sums
-    }
-}
-
-fn add<R: Real, const P: usize>(mut x: Linearization<R, P>, y: &Linearization<R, P>) -> Linearization<R, P> {
-    x.cost += y.cost;
-    for i in 0..P {
-        x.gradient[i] += y.gradient[i];
-        for j in 0..=i {
-            x.hessian[i][j] += y.hessian[i][j];
-        }
-    }
-    x
-}
-
-/// Residual and row of J of one lane.
-fn row<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
-    pass: &M::Pass,
-    block: &Block<R, LANES, C>,
-    lane: usize,
-) -> (R, [R; P]) {
-    let one = block.lane(lane);
-    let model = M::row::<true>(pass, &one);
-    let mut row = [R::ZERO; P];
-    for (value, column) in row.iter_mut().zip(&model.gradient) {
-        *value = column.0[0];
-    }
-    ((model.ln_f.0[0] - one.ln_f[0]) * one.weight[0], row)
 }
 
 #[inline(always)]

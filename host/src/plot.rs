@@ -17,14 +17,14 @@ mod scan;
 mod svg;
 mod waterfall;
 
-pub use albedo::albedo_svg;
-pub use converge::converge_svg;
+pub use albedo::{Albedo, albedo_svg};
+pub use converge::{Line as ConvergeLine, Panel as ConvergePanel, converge_svg};
 pub use curve::{LnF, of};
 pub use drawn::Drawn;
 pub use marks::Data;
 pub use overlay::{Overlay, overlay_svg};
 pub use polar::polar_svg;
-pub use profile::profile_svg;
+pub use profile::{Panel as ProfilePanel, profile_svg};
 pub use residuals::residuals_svg;
 pub use scan::scan_svg;
-pub use waterfall::waterfall_svg;
+pub use waterfall::{Met, waterfall_svg};

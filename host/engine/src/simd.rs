@@ -95,7 +95,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce f
     type Output = [R; 3];
     #[inline(always)]
     fn call(self) -> [R; 3] {
-        self.0.inlined_sums(self.1)
+        self.0.inlined_totals(self.1)
     }
 }
 
@@ -163,7 +163,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn cost(&self, x: &[R; P]) -> R {
-        self.run(Sums(&self.scan, x), || self.scan.scalar_sums(x))[0]
+        self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x))[0]
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.run(Linearize(&self.scan, x), || self.scan.scalar_linearize(x))
@@ -182,7 +182,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
         })
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_sums(x));
+        let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x));
         Residuals::<R, M, P, C>::levelled(bounds, x, sums)
     }
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {

@@ -17,6 +17,7 @@ use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
@@ -44,7 +45,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown model, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = models(arguments.models.as_deref())?;
     let inputs = std::slice::from_ref(&arguments.scan);
@@ -72,7 +73,7 @@ pub fn models(list: Option<&str>) -> Result<Vec<&'static Model>, Error> {
 }
 
 /// A model's fit.
-struct Fitted {
+struct Judged {
     outcome: Outcome,
     criteria: Criteria,
 }
@@ -80,11 +81,11 @@ struct Fitted {
 /// Fits each model, on all threads.
 ///
 /// Models with more parameters begin where those with fewer ended: one that contains another never ends above it.
-fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Fitted>, Error> {
+fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Judged>, Error> {
     let samples = &measurement.samples;
     let size = |model: &Model| model.parameters.len();
     let sizes: BTreeSet<usize> = models.iter().map(|model| size(model)).collect();
-    let mut fits: Vec<Fitted> = Vec::new();
+    let mut fits: Vec<Judged> = Vec::new();
     for one in sizes {
         let stage: Vec<&&Model> = models.iter().filter(|model| size(model) == one).collect();
         let fit = |model: &&&'static Model| {
@@ -98,26 +99,26 @@ fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> R
                 .collect();
             let outcome = engine::fit_from(samples, &options, &known)?;
             let criteria = criteria(samples, &options, outcome.cost);
-            Ok(Fitted { outcome, criteria })
+            Ok(Judged { outcome, criteria })
         };
-        let found: Result<Vec<Fitted>, FitError> = stage.par_iter().map(fit).collect();
+        let found: Result<Vec<Judged>, FitError> = stage.par_iter().map(fit).collect();
         fits.extend(found.map_err(|error| input::explain(measurement, error))?);
     }
     fits.sort_by_key(|fit| models.iter().position(|model| *model == fit.outcome.model));
     Ok(fits)
 }
 
-fn least_aicc(fits: &[Fitted]) -> f64 {
+fn least_aicc(fits: &[Judged]) -> f64 {
     fits.iter().map(|fit| fit.criteria.aicc).fold(f64::INFINITY, f64::min)
 }
 
-fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn text(measurement: &Measurement, fits: &[Judged]) -> String {
     let least = least_aicc(fits);
     let mut lines = vec![
         format!("{}: {} samples", measurement.label(), measurement.samples.len()),
         "  model                   P        MSE^2  rms ln    AICc  minima  parameters".to_string(),
     ];
-    for Fitted { outcome, criteria } in fits {
+    for Judged { outcome, criteria } in fits {
         let values = outcome.model.named(&outcome.params);
         let values: Vec<_> = values.map(|(name, value)| format!("{name} {}", four(value))).collect();
         let mark = if criteria.aicc == least { '*' } else { ' ' };
@@ -136,10 +137,10 @@ fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     lines.join("\n") + "\n"
 }
 
-fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn json(measurement: &Measurement, fits: &[Judged]) -> String {
     let models: Vec<_> = fits
         .iter()
-        .map(|Fitted { outcome, criteria }| {
+        .map(|Judged { outcome, criteria }| {
             json!({
                 "model": outcome.model.name,
                 "mse2": outcome.mse2,
@@ -151,11 +152,11 @@ fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
             })
         })
         .collect();
-    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
+    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models, "provenance": provenance(&measurement.about, None) });
     output::json(&value)
 }
 
-fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn picture(measurement: &Measurement, fits: &[Judged]) -> String {
     let mut best_first: Vec<&Outcome> = fits.iter().map(|fit| &fit.outcome).collect();
     best_first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let lines: Vec<_> = best_first

@@ -69,7 +69,7 @@ impl Axis {
         let ticks = |step: f64| -> Vec<Tick> {
             let tick = |at: f64| Tick {
                 at,
-                label: Some(svg::number(at).replace('-', "−")),
+                label: Some(svg::number(at)),
             };
             steps(low, high, step).map(tick).collect()
         };

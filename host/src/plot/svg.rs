@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use brdfit_core::real::Real;
 
+use crate::number;
+
 /// The best curve.
 pub const THICK: &str = "stroke=\"#f08a24\" stroke-width=\"3.5\"";
 /// Any other minimum.
@@ -100,30 +102,9 @@ pub fn sup(exponent: &str) -> String {
 
 /// A number with four digits, as a power of ten where that is shorter.
 pub fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    if !(1e-3..1e4).contains(&value.abs()) {
-        return scientific(value);
-    }
-    let decimals = (3 - log10(value.abs()).floor() as i32).max(0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').into()
-    } else {
-        text
-    }
-}
-
-/// A number with four digits and a power of ten.
-pub fn scientific(value: f64) -> String {
-    let text = format!("{value:.3e}");
-    match text.split_once('e') {
-        Some((mantissa, exponent)) => {
-            let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-            format!("{mantissa} × 10{}", sup(&exponent.replace('-', "−")))
-        }
-        None => text,
+    match number::set(&number::four(value)) {
+        (mantissa, Some(exponent)) => format!("{mantissa} × 10{}", sup(&exponent)),
+        (plain, None) => plain,
     }
 }
 

@@ -10,7 +10,7 @@ use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
 use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
 use crate::names;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::terms::term_names;
 
 /// A column of the tables.

@@ -2,7 +2,7 @@
 
 use super::{Angle, Inspected};
 use crate::input::left_out;
-use crate::number::digits;
+use crate::number::six;
 use crate::plain::plain;
 
 /// Columns and angles of incidence that are listed at most.
@@ -56,20 +56,20 @@ fn angle(angle: &Angle) -> String {
         Some((low, high)) => format!(
             "{} in plane, azimuths {} to {} deg",
             angle.in_plane,
-            digits(low),
-            digits(high)
+            six(low),
+            six(high)
         ),
     };
-    let brightest = angle.brightest.map_or(String::new(), |degrees| {
-        format!(", brightest at {} deg", digits(degrees))
-    });
+    let brightest = angle
+        .brightest
+        .map_or(String::new(), |degrees| format!(", brightest at {} deg", six(degrees)));
     format!(
         "    theta_i {:>8} deg: {:>4} samples, {plane}, theta_s {} to {} deg, BRDF {} to {} /sr{brightest}",
-        digits(angle.theta_i),
+        six(angle.theta_i),
         angle.samples,
-        digits(angle.theta_s.0),
-        digits(angle.theta_s.1),
-        digits(angle.brdf.0),
-        digits(angle.brdf.1),
+        six(angle.theta_s.0),
+        six(angle.theta_s.1),
+        six(angle.brdf.0),
+        six(angle.brdf.1),
     )
 }

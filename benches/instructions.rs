@@ -14,7 +14,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 /// What is counted, and how often it is repeated.
 const WORK: [(&str, u64); 6] = [
@@ -95,12 +95,12 @@ fn repeat<R: Real, const TERMS: u8, const P: usize>(
         scan: Scan::<R, TERMS, P>::new(&blocks),
         simd,
     };
-    let x = scene.candidate(&bounds, 0, 0, None).x;
+    let x = scene.candidate(&bounds, 0, 0, Region::Everywhere).x;
     for i in 0..repeats {
         match work {
             "cost" => drop(black_box(scene.cost(black_box(&x)))),
             "linearize" => drop(black_box(scene.linearize(black_box(&x)))),
-            "candidate" => drop(black_box(scene.candidate(&bounds, 0, black_box(i), None))),
+            "candidate" => drop(black_box(scene.candidate(&bounds, 0, black_box(i), Region::Everywhere))),
             _ => drop(black_box(fit(black_box(samples), &options))),
         }
     }

@@ -11,7 +11,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn passes<R: Real, const TERMS: u8, const P: usize>(
@@ -36,7 +36,7 @@ fn passes<R: Real, const TERMS: u8, const P: usize>(
         group.bench_function("candidate", |b| {
             b.iter(|| {
                 i += 1;
-                scene.candidate(&bounds, 0, black_box(i), None)
+                scene.candidate(&bounds, 0, black_box(i), Region::Everywhere)
             });
         });
         group.finish();

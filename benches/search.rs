@@ -9,7 +9,7 @@ use brdfit::engine::{FitOptions, Precision, blocks, fit};
 use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{self, Options};
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn search(criterion: &mut Criterion) {
@@ -22,7 +22,7 @@ fn search(criterion: &mut Criterion) {
             scan: Scan::<f64, ALL, 6>::new(&blocks),
             simd: Simd::best(),
         };
-        let start = scene.candidate(&bounds, 0, 0, None).x;
+        let start = scene.candidate(&bounds, 0, 0, Region::Everywhere).x;
         let options = Options::default();
         group.bench_function("one LM fit", |b| {
             b.iter(|| lm::fit(&scene, &bounds, black_box(start), &options));

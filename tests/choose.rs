@@ -54,7 +54,8 @@ fn finds_the_terms_of_a_scene() {
                 terms: chosen.terms,
                 ..FitOptions::default()
             };
-            assert_eq!(outcome, engine::fit(&samples, &alone).unwrap());
+            let alone = engine::fit(&samples, &alone).unwrap();
+            assert!(outcome.cost <= alone.cost * (1.0 + 1e-9));
             let free = outcome.uncertainty.places.iter().flatten().count();
             assert_eq!(free, parameters(chosen.terms));
         }

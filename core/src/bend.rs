@@ -2,33 +2,67 @@
 
 use crate::fresnel::Index;
 use crate::geometry::{Block, LANES};
+use crate::model::NEAR;
 use crate::pack::Pack;
 use crate::real::Real;
 
-/// Of the rows of weight above 0: the third least tan^2 theta_h, in column `tan2`, and cos theta_d, in column `cos`, nearest to the peak.
-pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2: usize, cos: usize) -> (R, R) {
-    let mut cos_theta_d = R::ONE;
+/// A sample nearer to a peak than this tan^2 theta_h sees the same of every slope that a fit can have.
+const SPECULAR: f64 = 1e-10;
+
+/// The least slope that a scan sees, over the third least tan theta_h: ln f follows a peak down over many powers of e, so that is far less than 1.
+pub(crate) const FINEST: f64 = 0.09;
+
+/// What the samples near the peak of a lobe tell.
+pub(crate) struct Peak<R> {
+    /// The third least tan^2 theta_h that is not 0.
+    pub third: R,
+    /// cos theta_d of the nearest.
+    pub cos_theta_d: R,
+    /// See [`Seen::near`](crate::model::Seen::near).
+    pub near: [(R, R); NEAR],
+}
+
+/// Of the rows of weight above 0, with tan^2 theta_h in column `tan2` and cos theta_d in column `cos`.
+pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2: usize, cos: usize) -> Peak<R> {
+    let mut peak = Peak {
+        third: R::MAX,
+        cos_theta_d: R::ONE,
+        near: [(R::MAX, R::ZERO); NEAR],
+    };
     let mut nearest = [R::MAX; 3];
     for block in blocks {
         let (Some(tan2), Some(cos)) = (block.columns.get(tan2), block.columns.get(cos)) else {
             continue;
         };
-        for (&weight, (&tan2, &cos)) in block.weight.iter().zip(tan2.iter().zip(cos)) {
-            let mut tan2 = tan2;
-            if !(weight > R::ZERO) {
+        for (lane, (&tan2, &cos)) in tan2.iter().zip(cos).enumerate() {
+            if !(block.weight[lane] > R::ZERO) {
                 continue;
             }
-            if tan2 < nearest[0] {
-                cos_theta_d = cos;
+            let mut sample = (tan2, block.ln_f[lane]);
+            if sample.0 < peak.near[0].0 {
+                peak.cos_theta_d = cos;
             }
+            for place in &mut peak.near {
+                if sample.0 < place.0 {
+                    core::mem::swap(place, &mut sample);
+                }
+            }
+            let mut tan2 = tan2;
             for place in &mut nearest {
-                if tan2 < *place {
+                if R::of(SPECULAR) < tan2 && tan2 < *place {
                     core::mem::swap(place, &mut tan2);
                 }
             }
         }
     }
-    (nearest[2], cos_theta_d)
+    peak.third = nearest[2];
+    peak
+}
+
+/// F at the peak of each lobe with one index (n, kappa^2), over that with another; 1 where the other has none.
+pub(crate) fn ratio<R: Real>(from: [R; 2], to: [R; 2], peaks: Pack<R, 2>) -> Pack<R, 2> {
+    let [from, to] = [from, to].map(|[n, kappa2]| Index::new(n, kappa2).reflect::<2>(peaks, false).f);
+    from.zip(to, |from, to| if to > R::TINY { from / to } else { R::ONE })
 }
 
 /// What is to be added to n + d n and kappa^2 + d kappa^2 so that Re 1/(n - i kappa) and (Im 1/(n - i kappa))^2 change by what they do to first order; nothing where that would make |n - i kappa| more than four times what it is.

@@ -4,15 +4,25 @@ use crate::boxqp;
 use crate::lm::{Bounds, Linearization};
 use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, Want, weights};
 use crate::pack::{ALONE, Pack};
+use crate::propose;
 use crate::real::Real;
 use crate::residuals::{Residuals, accumulate, total};
-use crate::search::{Candidate, Scene};
-use crate::start;
+use crate::search::{Candidate, Region, Scene};
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for Residuals<'_, R, M, P, C> {
     /// Candidate `i`: parameters that are not weights spread over the ranges that the model gives, then the weights that fit best.
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.inlined_candidate(bounds, seed, i, like)
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.inlined_candidate(bounds, seed, i, region)
+    }
+
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        Self::levelled(bounds, x, self.inlined_totals(x))
+    }
+
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        let slopes = M::PARAMETERS.iter().zip(x.iter().zip(y));
+        let mut slopes = slopes.filter(|(parameter, _)| matches!(parameter.role, Role::Slope));
+        slopes.any(|(_, (&x, &y))| x > y * factor || y > x * factor)
     }
 }
 
@@ -26,19 +36,13 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
 
     /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_candidate(
-        &self,
-        bounds: &Bounds<R, P>,
-        seed: u64,
-        i: u64,
-        like: Option<&[R; P]>,
-    ) -> Candidate<R, P> {
-        self.propose::<ALONE>(bounds, seed, i, like)
+    pub fn inlined_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.propose::<ALONE>(bounds, seed, i, region)
     }
 
     /// [`Scene::candidate`], one lane after the other: the same bits from less code.
-    pub fn scalar_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.propose::<true>(bounds, seed, i, like)
+    pub fn scalar_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.propose::<true>(bounds, seed, i, region)
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
@@ -47,18 +51,58 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         bounds: &Bounds<R, P>,
         seed: u64,
         i: u64,
-        like: Option<&[R; P]>,
+        region: Region<R, P>,
     ) -> Candidate<R, P> {
         let mut x = bounds.lower;
-        spread(&mut x, &M::PARAMETERS, bounds, seed, i, self.seen.finest);
-        if let Some(like) = like {
-            near(&mut x, &M::PARAMETERS, like, Self::HAS_INDEX);
+        let fades = propose::shapes(&mut x, &M::PARAMETERS, bounds, (seed, i), &self.seen, region);
+        if let Region::Index(like) = region
+            && Self::HAS_INDEX
+        {
+            // Where the model misfits, least squares of f would take the lobes away.
+            M::keep_heights(&self.seen, like, &mut x);
+            if fades {
+                M::fade(&mut x, bounds);
+            }
+            return Candidate {
+                x: bounds.clamp(x),
+                rank: R::ZERO,
+                passes: 0,
+            };
         }
-        let rank = self.set_weights::<SCALAR>(&mut x, bounds);
-        Candidate {
-            x: bounds.clamp(x),
-            rank,
+        let mut passes = 0;
+        loop {
+            let rank = self.set_weights::<SCALAR>(&mut x, bounds);
+            passes += 1;
+            if !(fades && passes == 1 && M::fade(&mut x, bounds)) {
+                let x = bounds.clamp(x);
+                return Candidate { x, rank, passes };
+            }
+            x = bounds.clamp(x);
         }
+    }
+
+    /// [`Scene::level`], given what [`Residuals::inlined_totals`] are at `x`.
+    ///
+    /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
+    pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
+        let (mut least, mut most) = (R::ZERO, R::MAX);
+        for k in Self::WEIGHTS.into_iter().flatten() {
+            if x[k] > R::ZERO {
+                least = least.max(bounds.lower[k] / x[k]);
+                most = most.min(bounds.upper[k] / x[k]);
+            }
+        }
+        let scale = (-residuals / weights).exp().max(least).min(most);
+        let ln_scale = scale.ln();
+        let cost = squares + ln_scale * (residuals + residuals + ln_scale * weights);
+        if !(least < most && cost < squares) {
+            return (*x, squares);
+        }
+        let mut levelled = *x;
+        for k in Self::WEIGHTS.into_iter().flatten() {
+            levelled[k] *= scale;
+        }
+        (bounds.clamp(levelled), cost)
     }
 
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
@@ -144,68 +188,6 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
     false
 }
 
-/// Sets the parameters that are not weights to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
-fn spread<R: Real, const P: usize>(
-    x: &mut [R; P],
-    parameters: &[Parameter; P],
-    bounds: &Bounds<R, P>,
-    seed: u64,
-    i: u64,
-    finest: R,
-) {
-    // The first three take an even sequence; points of one in more dimensions would be further apart in these.
-    let even = start::even::<R>(seed, i);
-    let mut spread = 0;
-    let mut random = None;
-    for k in 0..P {
-        let parameter = &parameters[k];
-        if parameter.is_weight() {
-            continue;
-        }
-        let u = match even.get(spread) {
-            Some(&u) => u,
-            None => random.get_or_insert_with(|| start::unit::<R, P>(seed, i))[k],
-        };
-        spread += 1;
-        let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
-        let (least, most) = (R::of(parameter.spread.0), R::of(parameter.spread.1));
-        let to = |most: R| upper.min(most).max(lower);
-        x[k] = match parameter.role {
-            Role::Slope => log_between(lower.max(finest).min(upper), to(most), u),
-            Role::Absorption => {
-                // A third of them without absorption.
-                let third = R::of(1.0 / 3.0);
-                if u < third {
-                    lower
-                } else {
-                    log_between(lower.max(least), upper.min(most).max(least), (u - third) * R::of(1.5))
-                }
-            }
-            _ if least > R::ZERO => log_between(lower.max(least).min(upper), to(most), u),
-            _ => {
-                let from = lower.max(least).min(upper);
-                from + (to(most) - from) * u
-            }
-        };
-    }
-}
-
-/// What decides between minima beside each other stays spread; the rest becomes that of `like`.
-///
-/// With an index of refraction that is the index alone; without one, everything stays within a factor of e.
-fn near<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], like: &[R; P], has_index: bool) {
-    for (k, parameter) in parameters.iter().enumerate() {
-        match parameter.role {
-            Role::Weight | Role::Index | Role::Absorption => {}
-            _ if has_index => x[k] = like[k],
-            _ => {
-                let ratio = (x[k] / like[k]).max(R::of(0.37)).min(R::of(2.7));
-                x[k] = like[k] * ratio;
-            }
-        }
-    }
-}
-
 /// The weights within bounds that solve `hessian weights = gradient` best, and their sum of squares, less what it is at the lower bounds; what is no weight is 0.
 fn box_least_squares<R: Real, const P: usize>(
     sums: &Linearization<R, P>,
@@ -241,14 +223,4 @@ fn box_least_squares<R: Real, const P: usize>(
         }
     }
     (core::array::from_fn(|i| lower[i] + step[i]), rank)
-}
-
-/// Between two positive numbers, evenly in the logarithm.
-fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
-    if !(lower < upper) {
-        return lower;
-    }
-    let lower = lower.max(R::MIN_POSITIVE);
-    let (a, b) = (lower.ln(), upper.ln());
-    (a + (b - a) * u).exp()
 }

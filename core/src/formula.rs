@@ -46,7 +46,7 @@
 
 use core::marker::PhantomData;
 
-use crate::bend::peak;
+use crate::bend::{FINEST, peak};
 use crate::dual::{Dual, Number};
 use crate::geometry::{Block, Geometry, LANES, SampleError};
 use crate::model::{GROUP, Model, Parameter, Rows, SUMS, Seen, WEIGHTS, Want, weights};
@@ -244,10 +244,11 @@ impl<R: Real, F: Formula<P>, const P: usize> Model<R, P, COLUMNS> for Own<F> {
     }
 
     fn seen(blocks: &[Block<R, LANES, COLUMNS>]) -> Seen<R> {
-        let (third, cos_theta_d) = peak(blocks, 5, 6);
+        let peak = peak(blocks, 5, 6);
         Seen {
-            finest: R::of(0.3) * third.sqrt(),
-            peaks: Pack::splat(cos_theta_d),
+            finest: R::of(FINEST) * peak.third.sqrt(),
+            peaks: Pack::splat(peak.cos_theta_d),
+            near: [peak.near; 2],
         }
     }
 }

@@ -25,7 +25,7 @@
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
 //! | search | [`search::search`], [`search::paper`] | `search.rs` | section 3 |
-//! | starts worth a fit | [`search::Scene`] | `candidate.rs` | |
+//! | starts worth a fit | [`search::Scene`] | `candidate.rs`, `propose.rs` | |
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
 
@@ -45,6 +45,7 @@ pub mod minima;
 pub mod model;
 pub mod models;
 pub mod pack;
+mod propose;
 pub mod real;
 pub mod residuals;
 mod scalar;

@@ -2,9 +2,10 @@
 
 use core::marker::PhantomData;
 
-use crate::bend::{bend, peak};
-use crate::brdf::{Brdf, EVERY, Lift, SECOND, WEIGHT, has, lobes, pair, slot};
+use crate::bend::{FINEST, bend, peak, ratio};
+use crate::brdf::{Brdf, EVERY, Lift, SECOND, WEIGHT, get, has, lobes, pair, slot};
 use crate::geometry::{Block, LANES, SampleError};
+use crate::lm::Bounds;
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
 use crate::model::{GROUP, Model, Parameter, Role, Rows, Seen, WEIGHTS, Want};
 use crate::pack::Pack;
@@ -51,8 +52,7 @@ pub const PARAMETERS: [Parameter; EVERY] = [
 const SLOPE_OF_FACETS: Parameter = Parameter::new("m", "m", Role::Slope, 10.0)
     .what("slope of the facets")
     .bounds(1e-5, 10.0)
-    .domain(1e-6, crate::model::LARGEST)
-    .spread(0.0, 3.0);
+    .domain(1e-6, crate::model::LARGEST);
 
 /// The parameters of some terms, in their order.
 const fn parameters_of<const P: usize>(terms: u8) -> [Parameter; P] {
@@ -135,10 +135,50 @@ where
 
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
         let [surface, volume] = [0, 1].map(|pair| peak(blocks, pair, 2 + pair));
+        let nearest = surface.third.min(volume.third);
         Seen {
-            finest: R::of(0.3) * surface.0.min(volume.0).sqrt(),
-            peaks: Pack([surface.1, volume.1]),
+            finest: R::of(FINEST) * nearest.sqrt(),
+            peaks: Pack([surface.cos_theta_d, volume.cos_theta_d]),
+            near: [surface.near, volume.near],
         }
+    }
+
+    fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        if let Some(rho_d) = place(0) {
+            x[rho_d] = like[rho_d];
+        }
+        let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
+        let ratio = ratio(index(like), index(x), seen.peaks);
+        for (k, pair) in WEIGHT.map(place).into_iter().zip([0, 1, 2].map(pair)) {
+            if let Some(k) = k {
+                x[k] = like[k] * ratio.0[pair % 2];
+            }
+        }
+    }
+
+    /// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
+    fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        let mut part = R::ZERO;
+        for k in WEIGHT.into_iter().filter_map(place) {
+            part = part.max(x[k] / bounds.upper[k]);
+        }
+        if !(part > R::ZERO) {
+            return false;
+        }
+        // Not so far up that F is no longer in proportion.
+        let part = part.min(R::of(10.0));
+        if let Some(n) = place(4) {
+            x[n] = R::ONE + (x[n] - R::ONE) * part.sqrt();
+        }
+        if let Some(kappa2) = place(5) {
+            x[kappa2] *= part;
+        }
+        for k in WEIGHT.into_iter().filter_map(place) {
+            x[k] = (x[k] / part).min(bounds.upper[k]);
+        }
+        true
     }
 
     fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {

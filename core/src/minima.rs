@@ -45,29 +45,6 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
         self.list.first()
     }
 
-    /// True, and a hit more, if an unfinished fit has come so near to a minimum of the table that it would end there: within 1 % of cost, and 5 % of each parameter.
-    pub(crate) fn join(&mut self, fit: &Fit<R, P>, start: u64) -> bool {
-        let near = |old: &Minimum<R, P>| {
-            close(old.cost, fit.at.cost, R::of(0.01))
-                && old
-                    .x
-                    .iter()
-                    .zip(&fit.x)
-                    .all(|(&x, &y)| close(x, y, R::of(0.05)) || (x - y).abs() < R::of(1e-3))
-        };
-        match self.list.iter_mut().find(|old| near(old)) {
-            Some(old) => {
-                old.hits += 1;
-                old.first_start = old.first_start.min(start);
-                if fit.at.cost < old.cost {
-                    (old.x, old.cost) = (fit.x, fit.at.cost);
-                }
-                true
-            }
-            None => false,
-        }
-    }
-
     /// Takes a further fit of the best minimum in place of the old one, if it is no worse; not counted as a hit.
     pub fn refine(&mut self, fit: &Fit<R, P>) {
         if let Some(old) = self.list.first_mut()
@@ -86,7 +63,9 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
             first_start: start,
         };
         // Joined with one minimum, a better fit may come within 1 % of the next.
-        while let Some(old) = self.take(|old| same(old, &new)) {
+        while let Some(place) = self.list.iter().position(|old| same(old, &new))
+            && let Some(old) = take(&mut self.list, place)
+        {
             new.hits += old.hits;
             new.first_start = new.first_start.min(old.first_start);
             if old.cost <= new.cost {
@@ -96,19 +75,6 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
         insert(&mut self.list, M, new, |minimum| minimum.cost);
     }
 
-    /// Takes the first that is as wanted out of the table.
-    fn take(&mut self, wanted: impl Fn(&Minimum<R, P>) -> bool) -> Option<Minimum<R, P>> {
-        let place = self.list.iter().position(wanted)?;
-        let mut rest = self.list.get_mut(place..)?;
-        while let [first, others @ ..] = rest
-            && let Some(next) = others.first_mut()
-        {
-            core::mem::swap(first, next);
-            rest = others;
-        }
-        self.list.pop()
-    }
-
     /// (high - low) / high over the costs of the table (Table 3); 0 if there are fewer than two.
     pub fn improvement_potential(&self) -> R {
         match (self.list.first(), self.list.last()) {
@@ -116,6 +82,24 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
             _ => R::ZERO,
         }
     }
+}
+
+/// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within 1 % of cost, and 5 % of each coordinate.
+pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<R, P>) -> bool {
+    let near = |(&x, &y): (&R, &R)| close(x, y, R::of(0.05)) || (x - y).abs() < R::of(1e-3);
+    close(cost, fit.at.cost, R::of(0.01)) && x.iter().zip(&fit.x).all(near)
+}
+
+/// Takes an item out of a list; the others stay in order.
+pub(crate) fn take<T, const N: usize>(list: &mut Vec<T, N>, place: usize) -> Option<T> {
+    let mut rest = list.get_mut(place..)?;
+    while let [first, others @ ..] = rest
+        && let Some(next) = others.first_mut()
+    {
+        core::mem::swap(first, next);
+        rest = others;
+    }
+    list.pop()
 }
 
 fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
@@ -148,11 +132,11 @@ pub(crate) fn sift<R: Real, T>(list: &mut [T], cost: impl Fn(&T) -> R) {
 }
 
 /// Order of costs, in which NaN comes last.
-fn less<R: Real>(a: R, b: R) -> bool {
+pub(crate) fn less<R: Real>(a: R, b: R) -> bool {
     a < b || (a.is_finite() && !b.is_finite())
 }
 
 /// Do two numbers of one sign differ by at most this part of the larger?
-fn close<R: Real>(x: R, y: R, part: R) -> bool {
+pub(crate) fn close<R: Real>(x: R, y: R, part: R) -> bool {
     (x - y).abs() <= part * x.abs().max(y.abs())
 }

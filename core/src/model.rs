@@ -3,6 +3,7 @@
 //! Scan, candidates, search, minima and uncertainty are written once, against [`Model`]; [`crate::formula`] makes one from a formula alone.
 
 use crate::geometry::{Block, LANES, SampleError};
+use crate::lm::Bounds;
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -133,6 +134,22 @@ pub struct Seen<R> {
     pub finest: R,
     /// cos theta_d nearest to the peak of the surface and of the volume lobe.
     pub peaks: Pack<R, 2>,
+    /// (tan^2 theta_h, ln f) of the samples nearest to the peak of each lobe, nearest first; tan^2 theta_h is the largest number where there are fewer.
+    pub near: [[(R, R); NEAR]; 2],
+}
+
+/// Samples near a peak that are remembered.
+pub const NEAR: usize = 8;
+
+impl<R: Real> Seen<R> {
+    /// Of a scan that tells nothing.
+    pub const fn nothing() -> Self {
+        Seen {
+            finest: R::ZERO,
+            peaks: Pack([R::ONE; 2]),
+            near: [[(R::MAX, R::ZERO); NEAR]; 2],
+        }
+    }
 }
 
 /// A model of `P` parameters that needs `C` numbers of each pair of directions.
@@ -176,10 +193,25 @@ pub trait Model<R: Real, const P: usize, const C: usize>: Copy {
     /// What the directions of a scan tell.
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
         let _ = blocks;
-        Seen {
-            finest: R::ZERO,
-            peaks: Pack::splat(R::ONE),
+        Seen::nothing()
+    }
+
+    /// Sets the weights of a point so that its lobes are as high as at another one that differs in the index.
+    fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
+        let _ = seen;
+        for (k, parameter) in Self::PARAMETERS.iter().enumerate() {
+            if parameter.is_weight() {
+                x[k] = like[k];
+            }
         }
+    }
+
+    /// Moves a point that has good weights to where the model all but vanishes at weights of 1, and its weights up to their bounds, so that f stays; false if it does not.
+    ///
+    /// Along this way the cost hardly changes, so that a fit takes long for it.
+    fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
+        let _ = (x, bounds);
+        false
     }
 
     /// See [`crate::lm::Problem::bend`].

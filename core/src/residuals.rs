@@ -180,17 +180,37 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         if ALONE {
             return self.scalar_cost(x);
         }
+        self.totals_of::<false>(x)[0]
+    }
+
+    /// The sums of r^2, w r and w^2 over the residuals r = w (ln f - measured), of weight w, compiled into its caller.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn inlined_totals(&self, x: &[R; P]) -> [R; 3] {
+        if ALONE {
+            return self.scalar_totals(x);
+        }
+        self.totals_of::<true>(x)
+    }
+
+    /// These; the second and the third only if `ALL`.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    fn totals_of<const ALL: bool>(&self, x: &[R; P]) -> [R; 3] {
         let pass = M::pass(x);
-        let mut squares = [R::ZERO; SUMS];
+        let mut sums = [[R::ZERO; SUMS]; 3];
         for block in self.blocks {
             let begun = M::begin(&pass, block);
             for lane in 0..SUMS {
                 let model = M::rows::<false>(&pass, block, &begun, lane);
-                let residual = residual(block, lane, model.ln_f);
-                squares[lane] += residual.0[0] * residual.0[0] + residual.0[1] * residual.0[1];
+                let [a, b] = residual(block, lane, model.ln_f).0;
+                sums[0][lane] += a * a + b * b;
+                if ALL {
+                    let [v, w] = Pack::<R, GROUP>::gather(&block.weight, lane).0;
+                    sums[1][lane] += a * v + b * w;
+                    sums[2][lane] += v * v + w * w;
+                }
             }
         }
-        total(&squares)
+        [total(&sums[0]), total(&sums[1]), total(&sums[2])]
     }
 
     /// [`Problem::linearize`], compiled into its caller.

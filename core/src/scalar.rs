@@ -17,16 +17,27 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         self.scalar_sums(x, Want::Value).cost
     }
 
+    /// [`Residuals::inlined_totals`], one lane after the other.
+    pub fn scalar_totals(&self, x: &[R; P]) -> [R; 3] {
+        let sums = self.scalar_sums(x, Want::Value);
+        let first = |row: &[R; P]| row.first().copied().unwrap_or(R::ZERO);
+        [
+            sums.cost,
+            first(&sums.gradient),
+            sums.hessian.first().map_or(R::ZERO, first),
+        ]
+    }
+
     /// [`crate::lm::Problem::linearize`], one lane after the other.
     pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.scalar_sums(x, Want::Gradient)
     }
 
-    /// The sums over all rows, in the order of [`crate::residuals::total`]: of the squares of the residuals; with these J'r and J'J; or the normal equations of the weights (`candidate.rs`).
+    /// The sums over all rows, in the order of [`crate::residuals::total`]: of the squares of the residuals, with the weights as the one column of J; of these with J'r and J'J; or the normal equations of the weights (`candidate.rs`).
     pub(crate) fn scalar_sums(&self, x: &[R; P], want: Want) -> Linearization<R, P> {
         let pass = M::pass(x);
         let columns = match want {
-            Want::Value => 0,
+            Want::Value => 1,
             Want::Gradient => P,
             Want::Columns => Self::WEIGHTS_END,
         };
@@ -65,9 +76,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
                 *residual = Self::scalar_row(pass, block, (lane + half * SUMS) % LANES, want, row);
             }
             sums.cost += residuals[0] * residuals[0] + residuals[1] * residuals[1];
-            if want != Want::Value {
-                add_rows(sums, &rows, &residuals, columns);
-            }
+            add_rows(sums, &rows, &residuals, columns);
         }
     }
 
@@ -82,6 +91,11 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
                 *column *= unit;
             }
             return weight;
+        }
+        if want == Want::Value
+            && let Some(column) = row.first_mut()
+        {
+            *column = weight;
         }
         (ln_f - block.ln_f[lane]) * weight
     }

@@ -1,45 +1,12 @@
 //! The search for the global optimum: the paper's, and a faster one.
 //!
 //! # The default method
-//! 1. A round of 32 candidates (`candidate.rs`): points of an even sequence in ln m, ln n and ln kappa^2, a third of them with kappa = 0, each with the weights that fit best. One pass for the weights; what their least squares leave over ranks the candidate, and the best 16 have a pass for their cost.
-//! 2. The best 8 by cost are fitted for 3 passes, the best 4 of those for 6, the best 2 until they converge or have come so near to a minimum already found that they would end there.
-//! 3. Three rounds are made, and more until two fits have ended in the best minimum, twelve at most. The first of small rounds reaches the optimum in half the passes that one twice as large needs.
-//! 4. Then 32 variations of the best: the same m, other n and kappa. Of these 12 have a pass for their cost, 6 are fitted for 5 passes and 2 converge. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart.
-//! 5. The best is brought to the caller's tolerance; until then 1e-8 is enough.
+//! 1. A round proposes candidates (`candidate.rs`), each with the weights that fit best. The most promising are levelled, which gives their cost; the best of those are fitted for a few passes; the best of these converges, and with it each that is near the best cost known, unless it comes so near to an end already found that it would end there.
+//! 2. After five rounds most scans are settled: the best end was reached more than once, and no fit with other slopes is anywhere near it. Where that is not so, further rounds look at one part of the range of slopes after the other.
+//! 3. Then come variations of the best: the same slopes, other kinds of index. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart. Where other slopes are near, slopes that pairs of samples tell are tried as well.
+//! 4. The best is brought to the caller's tolerance; until then 1e-8 is enough.
 //!
-//! # What lost
-//! Measured before `Scan::bend` moved n and kappa too: the present search misses 1 of 1000 such scenes against the best of 2000 starts, in 289 passes (`cargo bench --bench error_vs_time`).
-//!
-//! Passes (one without derivatives counts half), on 1000 random scenes and two seeds: noise of 0.5-20 %, two fifths of the model's own kind, misfits with a GGX lobe or two slopes, sparse scenes with a floor; a miss is a cost 1e-4 above the best of 200 mixed starts and of all variants.
-//! Sets: the paper's three with the first draw of noise, 100 seeds each; passes until the cost is within 1e-6 of the optimum, the median of the slowest set.
-//! None of the variants missed one of these.
-//!
-//! | variant | scenes missed of 2000 | passes | until the optimum |
-//! |---|--:|--:|--:|
-//! | this | 2 | 300 | 68 |
-//! | two rounds of 32 | 4 | 223 | 68 |
-//! | one round of 64, all by cost, 16, 8 and 4 fits, all variations by cost | 3 | 249 | 141 |
-//! | the same, all by cost | 4 | 250 | 76 |
-//! | the same, 12 of 32 by cost | 4 | 219 | 66 |
-//! | the same, none by cost: ranked by least squares alone | 6 | 201 | 60 |
-//! | the same, 8, 3 and 1 fits | 7 | 202 | 66 |
-//! | the same, 48 variations of which 8 and 3 are fitted, until three fits have ended in the best | 3 | 255 | 68 |
-//! | three rounds of 24, 12 by cost, 6, 3 and 1 fits | 6 | 228 | 54 |
-//! | four rounds of 16, 8 by cost, 4, 2 and 1 fits | 4 | 227 | 44 |
-//! | six of these | 3 | 305 | 44 |
-//! | eight of these, until three fits have ended in the best | 2 | 383 | 44 |
-//!
-//! Measured before with rounds of 64, against 450 mixed starts, and on 30 scans with a known optimum with ten seeds (a miss is 1e-6 above it):
-//!
-//! | variant | scenes missed of 2000 | passes | sets missed of 300 |
-//! |---|--:|--:|--:|
-//! | one round of 64, 16, 8 and 4 fits | 1-3 | 253 | 0 |
-//! | one round of 24, 12 and 6 fits without variations, m over all of Table 1 rather than from what the scan resolves to 3, n to 100 rather than 10 | 106 | 228 | 26 |
-//! | the same with those narrower ranges | 10 | 234 | 0 |
-//! | the wide ranges, the best of each of 24 bins of m | 304 | 242 | 49 |
-//! | one round of 16, 8 and 4 fits, no variations | 15 | 176 | 0 |
-//! | steps not bent (`Scan::bend`), 24 short and 8 whole fits of 128 candidates | 3 of 250 | 561 | 5 (849 passes; test data 3 took 600 to 2600) |
-//! | bent by the height of the lobe, rho F / m^2, rather than rho F | 2 | 237 | 0, but uniform starts find narrow peaks four times less often |
+//! What it misses, and what other designs missed: `benches/results/search.md`, made by `cargo bench --bench missed`.
 
 use core::ops::Range;
 
@@ -47,6 +14,7 @@ use heapless::Vec;
 
 use crate::lm::{self, Bounds, Fit, Options, Problem};
 use crate::minima::{self, Minima};
+use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
 use crate::start;
 
@@ -55,26 +23,46 @@ pub const MINIMA: usize = 32;
 /// Starts of the paper's method (section 3).
 pub const PAPER_STARTS: u32 = 250;
 /// The default method makes at most this many candidates, if nothing else is asked for.
-pub const CANDIDATES: u32 = 384;
+pub const CANDIDATES: u32 = (ROUNDS + CYCLES * BANDS) * ROUND;
+/// Parts of the range of slopes that rounds look at one by one.
+pub const BANDS: u32 = 8;
 
 /// Candidates of a round.
-const ROUND: u32 = 32;
+const ROUND: u32 = 15;
 /// Rounds that are made in any case.
-const ROUNDS: u32 = 3;
-/// How many of a round's candidates are tried by cost.
-const TRIED: usize = 16;
-/// How many of them go on, and until how many passes of a fit, stage by stage; the last converge.
-const STAGES: [(usize, u32); 3] = [(8, 3), (4, 6), (2, u32::MAX)];
-/// Candidates like the best minimum, in the last round.
-const VARIATIONS: u32 = 32;
-/// How many of them are tried by cost.
-const VARIATIONS_TRIED: usize = 12;
-/// Their stages.
-const VARIATION_STAGES: [(usize, u32); 2] = [(6, 5), (2, u32::MAX)];
-/// Most candidates that go on from a round.
-const KEPT: usize = 8;
-/// Independent fits that must have ended in the best minimum before the search stops.
-const ENOUGH_HITS: u32 = 2;
+const ROUNDS: u32 = 5;
+/// After so many parts of the range of slopes a scan can be settled.
+const FIRST_BANDS: u32 = 3;
+/// How often each part is looked at where that does not settle it.
+const CYCLES: u32 = 3;
+/// How many of a round's candidates are tried by cost, and for how many of them a fit begins.
+const TRIED: usize = 7;
+const BEGUN: usize = 3;
+/// Candidates with the slopes of the best, and for how many of a group of them a fit begins.
+const VARIATIONS: u32 = INDICES.len() as u32;
+const GROUP_BEGUN: usize = 2;
+/// Candidates with other slopes than the best, and for how many a fit begins.
+const SLOPES: u32 = 16;
+const SLOPES_BEGUN: usize = 4;
+/// Variations are made again of a better end that they lead to, so often at most.
+const LOOPS: u32 = 3;
+/// Passes of a fit before it is decided which of a round go on; a variation begins nearer to where it ends.
+const SHORT: u32 = 4;
+const VARIATION_SHORT: u32 = 3;
+/// A fit goes on that is within this factor of the best cost.
+const NEAR: f64 = 1.05;
+/// A fit is given up that is beyond this factor of the best cost after so many passes.
+const HOPELESS: (f64, u32) = (10.0, 10);
+/// An end whose slopes differ from the best by more than this factor, and its cost by less than that one, leaves a scan unsettled.
+const RIVAL_END: (f64, f64) = (1.1, 2.0);
+/// The same for a fit of a few passes.
+const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
+/// Rounds that must have led to the best end: after the first rounds, and after the first parts of the range of slopes.
+const HITS: (u32, u32) = (2, 3);
+/// Ends that are remembered.
+const ENDS: usize = 16;
+/// Two ends of the same cost, to this part, are one.
+const SAME: f64 = 1e-5;
 /// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
 const ROUGH: f64 = 1e-8;
 /// [`Options::max_passes`] of these fits.
@@ -88,14 +76,34 @@ pub struct Candidate<R, const P: usize> {
     pub x: [R; P],
     /// The lower, the more promising: a sum of squares that came with the start for nothing.
     pub rank: R,
+    /// Passes without derivatives that it took, if any.
+    pub passes: u32,
+}
+
+/// Where a candidate is looked for.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Region<'a, R, const P: usize> {
+    /// Everywhere within the bounds.
+    Everywhere,
+    /// Slopes in one of [`BANDS`] parts of their range.
+    Band(u32),
+    /// The slopes of a point, with another index: what decides between the minima near it.
+    Index(&'a [R; P]),
+    /// Slopes that samples near a peak tell, half of them with the index of a point.
+    Slopes(&'a [R; P]),
 }
 
 /// A problem that can propose good starts.
 pub trait Scene<R, const P: usize>: Problem<R, P> {
-    /// Candidate `i` of the sequence of `seed`; one pass as cheap as [`Problem::cost`].
-    ///
-    /// With `like`, only what decides between the minima near that point is varied.
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P>;
+    /// Candidate `i` of the sequence of `seed` in a region; at most two passes as cheap as [`Problem::cost`].
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P>;
+
+    /// A point with its weights scaled so that the mean residual is 0, as far as the bounds let them, and the cost there; one pass as cheap as [`Problem::cost`].
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R);
+
+    /// Do the slopes of two points differ by more than this factor?
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool;
 }
 
 /// How many evaluations were made.
@@ -170,12 +178,27 @@ pub fn paper<R: Real, const P: usize>(
     Found::new(best, minima, evaluations)
 }
 
-/// The default method; `candidates` limits the number of candidates, not counting the variations.
+/// The default method.
+///
+/// At most `candidates` are made, not counting the variations of the best.
+/// Up to [`CANDIDATES`], it ends as soon as more of them would be of no use; of a larger number, all are made.
 pub fn search<R: Real, const P: usize>(
     scene: &(impl Scene<R, P> + ?Sized),
     bounds: &Bounds<R, P>,
     seed: u64,
     candidates: u32,
+    options: &Options<R>,
+) -> Found<R, P> {
+    search_from(scene, bounds, seed, candidates, &[], options)
+}
+
+/// The same from points that are known too: it ends no higher than the nearest points to them within the bounds.
+pub fn search_from<R: Real, const P: usize>(
+    scene: &(impl Scene<R, P> + ?Sized),
+    bounds: &Bounds<R, P>,
+    seed: u64,
+    candidates: u32,
+    known: &[[R; P]],
     options: &Options<R>,
 ) -> Found<R, P> {
     let rough = Options {
@@ -188,20 +211,20 @@ pub fn search<R: Real, const P: usize>(
         bounds,
         seed,
         options: &rough,
+        round: 0,
         best: None,
+        ends: Vec::new(),
+        rival: None,
         minima: Minima::default(),
         evaluations: Evaluations::default(),
     };
-    let mut made = 0;
-    while made < candidates.max(1)
-        && (made < ROUNDS * ROUND || search.minima.best().is_none_or(|best| best.hits < ENOUGH_HITS))
-    {
-        let end = made.saturating_add(ROUND).min(candidates.max(1));
-        search.round(made..end, None, TRIED, &STAGES);
-        made = end;
+    for (&x, start) in known.iter().zip(u64::from(candidates)..) {
+        let mut fit = Fit::begin(scene, bounds, x, &rough);
+        search.converge(&mut fit, start);
+        search.evaluations.linearize += fit.passes;
     }
-    let like = search.best.map(|best| best.x);
-    search.round(0..VARIATIONS, like.as_ref(), VARIATIONS_TRIED, &VARIATION_STAGES);
+    let unsettled = search.rounds(candidates);
+    search.variations(unsettled);
     let Search {
         best,
         mut minima,
@@ -217,68 +240,204 @@ pub fn search<R: Real, const P: usize>(
     Found::new(best, minima, evaluations)
 }
 
+/// Where the candidates of a round are looked for: everywhere at first, and then in one part of the range of slopes after the other.
+fn region<'a, R, const P: usize>(round: u32) -> Region<'a, R, P> {
+    match round.checked_sub(ROUNDS) {
+        Some(band) if band % (2 * BANDS) < BANDS || band < CYCLES * BANDS => {
+            // The first of them are spread over the range.
+            Region::Band(band * 5 % BANDS)
+        }
+        _ => Region::Everywhere,
+    }
+}
+
+/// Where fits have ended; unlike a distinct minimum, one for each cost.
+struct End<R, const P: usize> {
+    x: [R; P],
+    cost: R,
+    /// In how many rounds a fit ended here, and the last of them.
+    hits: u32,
+    round: u32,
+}
+
 struct Search<'a, R, S: ?Sized, const P: usize> {
     scene: &'a S,
     bounds: &'a Bounds<R, P>,
     seed: u64,
     options: &'a Options<R>,
-    /// The fit that ended in the best minimum.
+    /// Number of rounds so far.
+    round: u32,
+    /// The fit that ended best.
     best: Option<Fit<R, P>>,
+    /// The ends of least cost, best first.
+    ends: Vec<End<R, P>, ENDS>,
+    /// The best short fit with other slopes than the best end.
+    rival: Option<([R; P], R)>,
     minima: Minima<R, P, MINIMA>,
     evaluations: Evaluations,
 }
 
 impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
-    /// Candidates by rank, the best of them by cost, short fits of the best of those, convergence of the best of these.
-    fn round(&mut self, indices: Range<u32>, like: Option<&[R; P]>, tried: usize, stages: &[(usize, u32)]) {
-        let mut ranked: Vec<(R, u32, [R; P]), TRIED> = Vec::new();
-        for i in indices {
-            let Candidate { x, rank } = self.scene.candidate(self.bounds, self.seed, u64::from(i), like);
-            self.evaluations.cost += 1;
-            minima::insert(&mut ranked, tried, (rank, i, x), |candidate| candidate.0);
-        }
-        let mut candidates: Vec<(R, u32, [R; P]), KEPT> = Vec::new();
-        let keep = stages.first().map_or(KEPT, |stage| stage.0);
-        for &(_, i, x) in &ranked {
-            self.evaluations.cost += 1;
-            minima::insert(&mut candidates, keep, (self.scene.cost(&x), i, x), |candidate| {
-                candidate.0
-            });
-        }
-        let mut fits: Vec<(Fit<R, P>, u32), KEPT> = Vec::new();
-        for &(_, i, x) in &candidates {
-            let _ = fits.push((Fit::begin(self.scene, self.bounds, x, self.options), i));
-        }
-        for &(count, passes) in stages {
-            while fits.len() > count {
-                let dropped = fits.pop();
-                self.evaluations.linearize += dropped.map_or(0, |(fit, _)| fit.passes);
+    /// Rounds until the scan is settled or `candidates` are made; true if it is not settled.
+    fn rounds(&mut self, candidates: u32) -> bool {
+        let ends_early = candidates <= CANDIDATES;
+        let mut unsettled = !ends_early;
+        let mut made = 0;
+        while made < candidates.max(1) {
+            let round = self.round;
+            if ends_early && round == ROUNDS {
+                unsettled = self.best_hits() < HITS.0 || self.has_rival_fit() || self.has_rival_end();
             }
-            for (fit, i) in fits.iter_mut() {
-                if passes == u32::MAX {
-                    self.converge(fit, u64::from(*i));
-                } else {
-                    fit.run(self.scene, self.bounds, self.options, passes);
-                }
+            let settled = if round == ROUNDS + FIRST_BANDS {
+                !unsettled || self.best_hits() >= HITS.1 && !self.has_rival_end()
+            } else {
+                round >= ROUNDS && !unsettled
+            };
+            if ends_early && settled {
+                break;
             }
-            for end in 1..=fits.len() {
-                minima::sift(fits.get_mut(..end).unwrap_or_default(), |(fit, _)| fit.at.cost);
+            let end = made.saturating_add(ROUND).min(candidates.max(1));
+            self.round(made..end, region(round), BEGUN);
+            made = end;
+        }
+        unsettled
+    }
+
+    /// Variations of the best, and again of a better one that they lead to.
+    fn variations(&mut self, unsettled: bool) {
+        for again in 0..LOOPS {
+            let Some(before) = self.best else { return };
+            let mut start = again * VARIATIONS;
+            for group in GROUPS {
+                let end = again * VARIATIONS + group;
+                self.round(start..end, Region::Index(&before.x), GROUP_BEGUN);
+                start = end;
+            }
+            if unsettled {
+                let slopes = again * SLOPES..(again + 1) * SLOPES;
+                self.round(slopes, Region::Slopes(&before.x), SLOPES_BEGUN);
+            }
+            let least = before.at.cost * R::of(1.0 - 1e-6);
+            if !self.best.is_some_and(|best| best.at.cost < least) {
+                return;
             }
         }
     }
 
-    /// Fits to convergence, or until it is plain that the fit joins a minimum already found.
+    /// Candidates by rank, the best of them by cost, short fits of the best of those, convergence of the best of these.
+    fn round(&mut self, indices: Range<u32>, region: Region<R, P>, begun: usize) {
+        self.round += 1;
+        let mut ranked: Vec<(R, u32, [R; P]), TRIED> = Vec::new();
+        for i in indices {
+            let candidate = self.scene.candidate(self.bounds, self.seed, u64::from(i), region);
+            self.evaluations.cost += candidate.passes;
+            // Narrow bounds make one of several.
+            if ranked.iter().all(|&(_, _, x)| x != candidate.x) {
+                minima::insert(&mut ranked, TRIED, (candidate.rank, i, candidate.x), |ranked| ranked.0);
+            }
+        }
+        let mut levelled: Vec<(R, u32, [R; P]), SLOPES_BEGUN> = Vec::new();
+        for &(_, i, x) in &ranked {
+            self.evaluations.cost += 1;
+            let (x, cost) = self.scene.level(self.bounds, &x);
+            minima::insert(&mut levelled, begun, (cost, i, x), |levelled| levelled.0);
+        }
+        let mut fits: Vec<(Fit<R, P>, u32), SLOPES_BEGUN> = Vec::new();
+        let varies = matches!(region, Region::Index(_));
+        let short = if varies { VARIATION_SHORT } else { SHORT };
+        for &(_, i, x) in &levelled {
+            let mut fit = Fit::begin(self.scene, self.bounds, x, self.options);
+            fit.run(self.scene, self.bounds, self.options, short);
+            let _ = fits.push((fit, i));
+            minima::sift(&mut fits, |(fit, _)| fit.at.cost);
+        }
+        for (place, (fit, i)) in fits.iter_mut().enumerate() {
+            self.note_rival(fit);
+            if place == 0 && !varies || self.is_near(fit.at.cost, NEAR) {
+                self.converge(fit, u64::from(*i));
+            }
+            self.evaluations.linearize += fit.passes;
+        }
+    }
+
+    /// Is a cost within this factor of the best?
+    fn is_near(&self, cost: R, factor: f64) -> bool {
+        self.ends.first().is_none_or(|best| cost < best.cost * R::of(factor))
+    }
+
+    /// In how many rounds a fit has ended in the best.
+    fn best_hits(&self) -> u32 {
+        self.ends.first().map_or(0, |best| best.hits)
+    }
+
+    /// Remembers a short fit with other slopes than the best.
+    fn note_rival(&mut self, fit: &Fit<R, P>) {
+        let Some(best) = self.ends.first() else { return };
+        let is_rival = |x: &[R; P]| self.scene.apart(x, &best.x, R::of(RIVAL_FIT.0));
+        let old = self.rival.filter(|(x, _)| is_rival(x));
+        if is_rival(&fit.x) && old.is_none_or(|(_, cost)| fit.at.cost < cost) {
+            self.rival = Some((fit.x, fit.at.cost));
+        }
+    }
+
+    /// Came a short fit with other slopes near the best?
+    fn has_rival_fit(&self) -> bool {
+        let (Some(best), Some((x, cost))) = (self.ends.first(), &self.rival) else {
+            return false;
+        };
+        self.is_near(*cost, RIVAL_FIT.1) && self.scene.apart(x, &best.x, R::of(RIVAL_FIT.0))
+    }
+
+    /// Is an end with other slopes near the best?
+    fn has_rival_end(&self) -> bool {
+        let [best, others @ ..] = self.ends.as_slice() else {
+            return false;
+        };
+        let mut near = others.iter().filter(|end| self.is_near(end.cost, RIVAL_END.1));
+        near.any(|end| self.scene.apart(&end.x, &best.x, R::of(RIVAL_END.0)))
+    }
+
+    /// Fits to convergence, or until it is plain that the fit joins an end already found, or leads nowhere.
     fn converge(&mut self, fit: &mut Fit<R, P>, start: u64) {
-        while fit.stop.is_none() && !self.minima.join(fit, start) {
+        loop {
+            let converged = fit.stop.is_some();
+            let place = self.ends.iter().position(|end| {
+                if converged {
+                    minima::close(end.cost, fit.at.cost, R::of(SAME))
+                } else {
+                    minima::joins((&end.x, end.cost), fit)
+                }
+            });
+            if place.is_some() || converged {
+                self.end(fit, place);
+                return self.minima.add(fit, start);
+            }
+            if fit.passes > HOPELESS.1 && !self.is_near(fit.at.cost, HOPELESS.0) {
+                return;
+            }
             let passes = fit.passes + 2;
             fit.run(self.scene, self.bounds, self.options, passes);
         }
-        if fit.stop.is_some() {
-            self.minima.add(fit, start);
+    }
+
+    /// Takes note that a fit ends in the end at `place`, or in a new one.
+    fn end(&mut self, fit: &Fit<R, P>, place: Option<usize>) {
+        let old = place.and_then(|place| minima::take(&mut self.ends, place));
+        let mut end = old.unwrap_or(End {
+            x: fit.x,
+            cost: fit.at.cost,
+            hits: 0,
+            round: 0,
+        });
+        if end.round < self.round {
+            (end.hits, end.round) = (end.hits + 1, self.round);
         }
-        if self.best.is_none_or(|best| fit.at.cost < best.at.cost) {
+        if fit.at.cost < end.cost {
+            (end.x, end.cost) = (fit.x, fit.at.cost);
+        }
+        minima::insert(&mut self.ends, ENDS, end, |end| end.cost);
+        if self.best.is_none_or(|best| minima::less(fit.at.cost, best.at.cost)) {
             self.best = Some(*fit);
         }
-        self.evaluations.linearize += fit.passes;
     }
 }

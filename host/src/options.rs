@@ -18,7 +18,7 @@ pub struct SearchArguments {
     /// How to search: candidates and short fits, or the paper's full fits from uniform starts
     #[arg(long, value_name = "METHOD", value_parser = one_of(&METHODS), default_value = METHODS[0].0)]
     method: Method,
-    /// Number of starts [default: the method's own]
+    /// Number of starts [default: the paper's method 250; the other as many as the scan needs, 435 at most, and of more than that all are made]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     starts: Option<u32>,
     /// Seed of the starts

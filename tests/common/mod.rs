@@ -7,9 +7,11 @@
 pub mod claims;
 pub mod double_double;
 pub mod dual;
+pub mod hard_scenes;
 pub mod interval_oracle;
 pub mod literal;
 pub mod mgh_problems;
+pub mod missed;
 pub mod nist_models;
 pub mod program;
 pub mod random_scenes;

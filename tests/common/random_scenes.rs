@@ -1,11 +1,10 @@
 //! Random scans of many kinds, and a brute-force search to judge others by.
 
-use brdfit::engine::simd::FastEq14;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options};
 use brdfit_core::real::Real;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 use brdfit_core::start;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -28,23 +27,28 @@ pub enum Kind {
 /// All kinds; scene k is of kind k modulo their number.
 pub const KINDS: [Kind; 5] = [Kind::Uniform, Kind::LogNormal, Kind::Ggx, Kind::TwoSlopes, Kind::Sparse];
 
-struct Random(Xoshiro256PlusPlus);
+/// The numbers that a scene is made of.
+pub(crate) struct Random(Xoshiro256PlusPlus);
 
 impl Random {
-    fn unit(&mut self) -> f64 {
+    /// The same numbers for the same seed.
+    pub(crate) fn new(seed: u64) -> Self {
+        Random(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+    pub(crate) fn unit(&mut self) -> f64 {
         f64::unit(self.0.next_u64())
     }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
-    fn log_between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn log_between(&mut self, low: f64, high: f64) -> f64 {
         Real::exp(self.between(Real::ln(low), Real::ln(high)))
     }
-    fn one_in(&mut self, share: f64) -> bool {
+    pub(crate) fn one_in(&mut self, share: f64) -> bool {
         self.unit() < share
     }
     /// Standard normal (Box and Muller 1958).
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let radius = Real::sqrt(-2.0 * Real::ln(1.0 - self.unit()));
         radius * Real::sin_cos(std::f64::consts::TAU * self.unit()).1
     }
@@ -53,7 +57,7 @@ impl Random {
 /// Scene `k`: one to five incident angles, noise of 0.5 to 20 %.
 pub fn scene(k: u64) -> Vec<Sample<f64>> {
     let kind = KINDS[(k % KINDS.len() as u64) as usize];
-    let random = &mut Random(Xoshiro256PlusPlus::seed_from_u64(0x1234 + 7919 * k));
+    let random = &mut Random::new(0x1234 + 7919 * k);
     let angles = 1 + (random.unit() * 5.0) as usize;
     let theta_i: Vec<f64> = (0..angles).map(|_| random.between(0.0, 80.0).round()).collect();
     let rho_d = random.log_between(1e-3, 0.9);
@@ -126,14 +130,14 @@ fn clean(kind: Kind, params: &Params<f64>, wide: &Params<f64>, geometry: &Geomet
 /// The least cost from `starts` starts: a third uniform over the bounds, the others candidates of the default search under another seed.
 ///
 /// Each makes 25 passes, and goes on to convergence if it is then within 30 % of the best.
-pub fn brute(scene: &FastEq14<f64, ALL, 6>, bounds: &Bounds<f64, 6>, starts: u64, seed: u64) -> f64 {
+pub fn brute<const P: usize>(scene: &impl Scene<f64, P>, bounds: &Bounds<f64, P>, starts: u64, seed: u64) -> f64 {
     let options = Options::default();
     let mut best = f64::INFINITY;
     for i in 0..starts {
         let x = if i % 3 == 0 {
             start::uniform(seed, i, bounds)
         } else {
-            scene.candidate(bounds, !seed, i, None).x
+            scene.candidate(bounds, !seed, i, Region::Everywhere).x
         };
         let mut fit = Fit::begin(scene, bounds, x, &options);
         fit.run(scene, bounds, &options, 25);

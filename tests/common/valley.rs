@@ -4,7 +4,7 @@ use brdfit::engine::blocks;
 use brdfit_core::brdf::ALL;
 use brdfit_core::lm::{Linearization, Options, Problem, Stop, fit};
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 use crate::scan::{data, scan};
 
@@ -49,7 +49,7 @@ pub fn passes_to_the_end(set: u32, kind: &str, bent: bool) -> Passes {
     let mut lost = 0;
     let mut passes = Vec::new();
     for i in 0..FITS {
-        let start = scene.candidate(&bounds, 0, i, None).x;
+        let start = scene.candidate(&bounds, 0, i, Region::Everywhere).x;
         let fit = if bent {
             fit(&scene, &bounds, start, &options)
         } else {

@@ -262,7 +262,7 @@ typedef struct {
    */
   uint32_t terms;
   /**
-   * Largest number of candidates of a search, at least 1; 384.
+   * Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
    */
   uint32_t candidates;
   /**
@@ -460,7 +460,7 @@ typedef struct {
    */
   uint32_t terms;
   /**
-   * Largest number of candidates of a search, at least 1; 384.
+   * Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
    */
   uint32_t candidates;
   /**

@@ -7,7 +7,7 @@ use brdfit_core::geometry::Block;
 use brdfit_core::lm::Fit;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 use crate::Done;
 use crate::memory::{changed, input, output, outputs};
@@ -98,7 +98,7 @@ fn candidate_of<R: Real, const TERMS: u8, const P: usize>(
     enough::<P>(samples)?;
     let scan = Scan::<R, TERMS, P>::new(blocks);
     let x = scan
-        .candidate(&bounds::<R, TERMS, P>(options), options.seed, index, None)
+        .candidate(&bounds::<R, TERMS, P>(options), options.seed, index, Region::Everywhere)
         .x;
     Ok(Scan::<R, TERMS, P>::params(&x).into())
 }

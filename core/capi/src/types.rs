@@ -189,7 +189,7 @@ pub struct brdfit_options<R> {
     pub seed: u64,
     /// A sum of BRDFIT_DIFFUSE and others; BRDFIT_ALL.
     pub terms: u32,
-    /// Largest number of candidates of a search, at least 1; 384.
+    /// Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
     pub candidates: u32,
     /// Largest number of passes of a fit, at least 1; 500.
     pub max_passes: u32,

@@ -25,7 +25,7 @@ type Joint = Result<joint::Fitted, (usize, FitError)>;
 #[derive(Clone, Copy, Debug)]
 pub struct Compiled {
     pub(crate) terms: u8,
-    pub(crate) fit: fn(&[Sample<f64>], &FitOptions) -> Result<Outcome, FitError>,
+    pub(crate) fit: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Outcome, FitError>,
     pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Found, FitError>,
     pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
 }
@@ -113,17 +113,18 @@ fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
 fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
+    known: &[Values],
 ) -> Result<Outcome, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     let exact = blocks_of::<f64, M, P, C>(samples)?;
     let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
     match options.precision {
-        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options),
+        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options, known),
         Precision::F32 => {
             let blocks = blocks_of::<f32, M, P, C>(samples)?;
             let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
-            search::run::<f32, P>(&scene, &exact, own, samples, options)
+            search::run::<f32, P>(&scene, &exact, own, samples, options, known)
         }
     }
 }

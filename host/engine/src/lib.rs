@@ -27,6 +27,6 @@ pub use material::Material;
 pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
 pub use outcome::{FitError, Minimum, Outcome};
-pub use search::{descend, fit};
+pub use search::{descend, fit, fit_from};
 pub use until::Until;
 pub use values::{MOST, Values};

@@ -2,7 +2,7 @@
 
 use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
-use brdfit_core::model::Parameter;
+use brdfit_core::model::{Parameter, Role};
 
 use crate::compiled::{Both, Compiled, Whole, parameters_of, whole};
 use crate::models::MODELS;
@@ -132,6 +132,23 @@ impl Model {
         } else {
             1.0
         }
+    }
+
+    /// The values of this model that come nearest to those of another: the same ones if this model contains the other.
+    ///
+    /// Parameters are the same by name; a slope that the other does not have is its m, another weight is 0, and the tail is that of GGX.
+    pub fn translated(&self, from: &Model, values: &[f64]) -> Values {
+        let value = |place: usize| {
+            let parameter = &self.parameters[place];
+            from.value(values, parameter.name).or(match parameter.role {
+                Role::Slope => from.value(values, "m"),
+                Role::Shape if parameter.name == "q" => Some(2.0),
+                _ => None,
+            })
+        };
+        Values::from_fn(self.parameters.len(), |place| {
+            value(place).unwrap_or_else(|| self.absent(place))
+        })
     }
 
     /// ln f in the directions of `sample`, f in sr^-1, and its derivatives by the parameters; none beyond the horizon.

@@ -32,7 +32,7 @@ pub struct FitOptions {
     pub method: Method,
     /// Seed of the starts.
     pub seed: u64,
-    /// Number of starts (`paper`) or candidates (`default`); `None` for the method's own.
+    /// Number of starts (`paper`), or of candidates at most (`default`; beyond its own number all are made); `None` for the method's own.
     pub starts: Option<u32>,
     /// The model.
     pub model: &'static Model,

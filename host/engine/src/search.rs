@@ -19,9 +19,17 @@ use crate::{Values, robust, uncertainty};
 /// # Errors
 /// [`FitError`].
 pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, FitError> {
+    fit_from(samples, options, &[])
+}
+
+/// The same from values of the model's parameters that are known too: the fit ends no higher than they are.
+///
+/// # Errors
+/// [`FitError`].
+pub fn fit_from(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
     let plain = |samples: &[Sample<f64>], options: &FitOptions| {
         let (compiled, options) = options.model.compiled(options)?;
-        (compiled.fit)(samples, &options)
+        (compiled.fit)(samples, &options, known)
     };
     if options.robust {
         robust::fit(samples, options, plain)
@@ -80,6 +88,7 @@ pub(crate) fn run<R: Real, const P: usize>(
     own: &[Parameter; P],
     samples: &[Sample<f64>],
     options: &FitOptions,
+    known: &[Values],
 ) -> Result<Outcome, FitError> {
     let layout = Layout::new(own, options.model);
     let scene = &Watched {
@@ -89,13 +98,14 @@ pub(crate) fn run<R: Real, const P: usize>(
     let bounds: Bounds<R, P> = layout.bounds(options);
     let lm = Options::default();
     let starts = options.starts();
+    let known: Vec<[R; P]> = known.iter().map(|values| layout.coordinates(values)).collect();
     let found: Found<R, P> = match options.method {
-        Method::Default => search::search(single(scene), &bounds, options.seed, starts, &lm),
+        Method::Default => search::search_from(single(scene), &bounds, options.seed, starts, &known, &lm),
         Method::Paper => {
-            let fits: Vec<_> = (0..u64::from(starts))
-                .into_par_iter()
-                .map(|i| search::paper_fit(scene, &bounds, options.seed, i, &lm))
-                .collect();
+            let own = (0..u64::from(starts)).into_par_iter();
+            let own = own.map(|i| search::paper_fit(scene, &bounds, options.seed, i, &lm));
+            let more = known.par_iter().map(|&x| lm::fit(scene, &bounds, x, &lm));
+            let fits: Vec<_> = own.chain(more).collect();
             search::paper(scene, &bounds, fits, &lm)
         }
     };

@@ -5,7 +5,7 @@ use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Residuals;
-use brdfit_core::search::{Candidate, Scene};
+use brdfit_core::search::{Candidate, Region, Scene};
 use pulp::NullaryFnOnce;
 
 /// A set of vector instructions.
@@ -89,12 +89,13 @@ pub struct FastScan<'a, R, M, const P: usize, const C: usize = 6, const VECTORS:
 /// The same for `TERMS` of Eq. 14.
 pub type FastEq14<'a, R, const TERMS: u8, const P: usize> = FastScan<'a, R, Microfacet<TERMS>, P>;
 
-struct Cost<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Cost<'_, R, M, P, C> {
-    type Output = R;
+/// The pass of both [`Problem::cost`] and [`Scene::level`].
+struct Sums<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Sums<'_, R, M, P, C> {
+    type Output = [R; 3];
     #[inline(always)]
-    fn call(self) -> R {
-        self.0.inlined_cost(self.1)
+    fn call(self) -> [R; 3] {
+        self.0.inlined_totals(self.1)
     }
 }
 
@@ -112,7 +113,7 @@ struct Propose<'a, R, M, const P: usize, const C: usize>(
     &'a Bounds<R, P>,
     u64,
     u64,
-    Option<&'a [R; P]>,
+    Region<'a, R, P>,
 );
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Propose<'_, R, M, P, C> {
     type Output = Candidate<R, P>;
@@ -162,7 +163,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn cost(&self, x: &[R; P]) -> R {
-        self.run(Cost(&self.scan, x), || self.scan.scalar_cost(x))
+        self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x))[0]
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         self.run(Linearize(&self.scan, x), || self.scan.scalar_linearize(x))
@@ -175,9 +176,16 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
     for FastScan<'_, R, M, P, C, VECTORS>
 {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.run(Propose(&self.scan, bounds, seed, i, like), || {
-            self.scan.scalar_candidate(bounds, seed, i, like)
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.run(Propose(&self.scan, bounds, seed, i, region), || {
+            self.scan.scalar_candidate(bounds, seed, i, region)
         })
+    }
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x));
+        Residuals::<R, M, P, C>::levelled(bounds, x, sums)
+    }
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        self.scan.apart(x, y, factor)
     }
 }

@@ -7,7 +7,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
 use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
-use brdfit_core::search::{self, Candidate, Evaluations, Scene};
+use brdfit_core::search::{self, Candidate, Evaluations, Region, Scene};
 
 use crate::compiled::Kernel;
 use crate::layout::Layout;
@@ -144,8 +144,17 @@ impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
 }
 
 impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
-        self.seen.borrow_mut().evaluations.cost += 1;
-        self.scene.candidate(bounds, seed, i, like)
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        let candidate = self.scene.candidate(bounds, seed, i, region);
+        self.seen.borrow_mut().evaluations.cost += candidate.passes;
+        candidate
+    }
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        let (x, cost) = self.scene.level(bounds, x);
+        self.note(&x, cost, 0);
+        (x, cost)
+    }
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        self.scene.apart(x, y, factor)
     }
 }

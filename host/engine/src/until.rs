@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
-use brdfit_core::search::{Candidate, Scene};
+use brdfit_core::search::{Candidate, Region, Scene};
 
 use crate::compiled::Kernel;
 
@@ -69,14 +69,24 @@ impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
 }
 
 impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
+    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         if self.until.is_over() {
             return Candidate {
                 x: bounds.lower,
                 rank: R::MAX,
+                passes: 0,
             };
         }
-        self.scene.candidate(bounds, seed, i, like)
+        self.scene.candidate(bounds, seed, i, region)
+    }
+    fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
+        if self.until.is_over() {
+            return (*x, R::of(f64::NAN));
+        }
+        self.scene.level(bounds, x)
+    }
+    fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
+        self.scene.apart(x, y, factor)
     }
 }
 

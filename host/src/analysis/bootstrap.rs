@@ -48,7 +48,7 @@ pub fn copy(samples: &[Sample<f64>], material: &Material, scale: f64, noise: &mu
     samples.iter().map(one).collect()
 }
 
-/// The parameters of `count` copies, searched anew each, in order of the copies; the threads of the current rayon pool share them, and change no bit.
+/// The parameters of `count` copies, each searched anew and from those of the scan, in order of the copies; the threads of the current rayon pool share them, and change no bit.
 ///
 /// # Errors
 /// [`FitError`].
@@ -61,7 +61,7 @@ pub fn bootstrap(
     let one = |k: u32| {
         let mut noise = Noise::new(options.seed, u64::from(k));
         let copy = copy(samples, &outcome.material(), outcome.uncertainty.scale, &mut noise);
-        Ok(engine::fit(&copy, options)?.params)
+        Ok(engine::fit_from(&copy, options, &[outcome.params])?.params)
     };
     (0..count).into_par_iter().map(one).collect()
 }

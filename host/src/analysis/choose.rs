@@ -1,12 +1,14 @@
 //! The model, and the set of its terms, that a scan supports: the least BIC of several candidates.
 
+use std::collections::BTreeSet;
+
 use brdfit_core::brdf::DIFFUSE;
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
 use crate::engine::robust::{self, Robust};
-use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until};
+use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
 
 /// The compiled sets with a diffuse term, in order of size, each with the one that it is tested against.
 pub const SETS: [(u8, Option<u8>); 5] = {
@@ -184,27 +186,43 @@ fn without_outliers(
 }
 
 /// Fits every candidate that has no more parameters than there are samples.
+///
+/// Those with more parameters begin where those with fewer ended: one that contains another never ends above it.
 fn fit_each(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Vec<(FitOptions, Outcome)>, FitError> {
-    let fits: Vec<_> = list
-        .par_iter()
-        .map(|options| engine::fit(samples, options).map(|outcome| (*options, outcome)))
-        .collect();
-    let mut fitted = Vec::new();
-    let mut fewest: Option<(usize, FitError)> = None;
-    for fit in fits {
-        match fit {
-            Ok(fit) => fitted.push(fit),
-            Err(error @ FitError::TooFew(_, parameters)) => {
-                if fewest.is_none_or(|(known, _)| parameters < known) {
-                    fewest = Some((parameters, error));
-                }
+    let size = |options: &FitOptions| options.free().count();
+    let sizes: BTreeSet<usize> = list.iter().map(size).collect();
+    let mut fitted: Vec<(usize, FitOptions, Outcome)> = Vec::new();
+    let mut fewest = None;
+    for one in sizes {
+        let stage: Vec<(usize, &FitOptions)> = list
+            .iter()
+            .enumerate()
+            .filter(|(_, options)| size(options) == one)
+            .collect();
+        let fit = |(place, options): &(usize, &FitOptions)| {
+            let known: Vec<Values> = fitted
+                .iter()
+                .map(|(_, _, smaller)| options.model.translated(smaller.model, &smaller.params))
+                .collect();
+            engine::fit_from(samples, options, &known).map(|outcome| (*place, **options, outcome))
+        };
+        let found: Vec<_> = stage.par_iter().map(fit).collect();
+        for fit in found {
+            match fit {
+                Ok(fit) => fitted.push(fit),
+                // The sizes ascend, so the first is that of the fewest parameters.
+                Err(error @ FitError::TooFew(..)) => fewest = fewest.or(Some(error)),
+                Err(error) => return Err(error),
             }
-            Err(error) => return Err(error),
         }
     }
+    fitted.sort_by_key(|(place, ..)| *place);
     match fewest {
-        Some((_, error)) if fitted.is_empty() => Err(error),
-        _ => Ok(fitted),
+        Some(error) if fitted.is_empty() => Err(error),
+        _ => Ok(fitted
+            .into_iter()
+            .map(|(_, options, outcome)| (options, outcome))
+            .collect()),
     }
 }
 

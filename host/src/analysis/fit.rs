@@ -7,7 +7,7 @@ use brdfit_core::geometry::Sample;
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
 use super::hints::{self, Hint};
-use crate::engine::{FitOptions, Material, Outcome};
+use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
@@ -36,6 +36,8 @@ pub struct FittedScan {
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
     pub derived: Vec<Derived>,
+    /// The cost that the search had found, if another fit then led lower.
+    pub improved_from: Option<f64>,
     /// What a person would say of it.
     pub hints: Vec<Hint>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
@@ -83,8 +85,32 @@ impl FittedScan {
             chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,
             choice: None,
+            improved_from: None,
             elapsed: Some(elapsed),
         }
+    }
+
+    /// The fit of the same samples, less outliers, from values that are known to be better.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn improved(self, measurement: &Measurement, kept: &[Sample<f64>], values: Values) -> Result<Self, FitError> {
+        let options = FitOptions {
+            robust: false,
+            ..self.options
+        };
+        let known = [values, self.outcome.params];
+        let outcome = Outcome {
+            robust: self.outcome.robust,
+            ..engine::fit_from(kept, &options, &known)?
+        };
+        let elapsed = self.elapsed.unwrap_or_default();
+        Ok(FittedScan {
+            choice: self.choice,
+            improved_from: Some(self.outcome.cost),
+            elapsed: self.elapsed,
+            ..FittedScan::new(measurement, &self.options, outcome, elapsed)
+        })
     }
 }
 

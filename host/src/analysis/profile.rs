@@ -2,6 +2,7 @@
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
+use rayon::prelude::*;
 
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
@@ -59,6 +60,81 @@ impl Profile {
         }
         (point.cost - self.best.cost) / self.best.cost * self.degrees_of_freedom as f64
     }
+}
+
+/// Profiles of several parameters, all of the best fit that any of them meets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profiles {
+    /// That fit.
+    pub outcome: Outcome,
+    /// The cost of the fit that was given, if a profile met a better one.
+    pub improved_from: Option<f64>,
+    /// One for each parameter.
+    pub list: Vec<Profile>,
+}
+
+/// A point is better than the fit if its cost is lower by more than this part.
+const BETTER: f64 = 1e-6;
+/// Better fits that are begun from, at most.
+const RESTARTS: usize = 8;
+
+/// Profiles the parameters in these places; where a point is better than the fit, the fit goes on from there and the profiles are made again.
+///
+/// The threads of the current rayon pool share them, and change no bit; for `copies` see [`profile`].
+///
+/// # Errors
+/// [`FitError`].
+pub fn profiles(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: Outcome,
+    places: &[usize],
+    copies: u32,
+) -> Result<Profiles, FitError> {
+    let mut outcome = outcome;
+    let mut improved_from = None;
+    for restart in 0.. {
+        // Copies take most of the time, and are made when the fit is sure.
+        let mut list = list(samples, options, &outcome, places, 0)?;
+        if copies > 0 && least(&list).is_none_or(|point| !is_better(samples, options, &point, &outcome)) {
+            list = self::list(samples, options, &outcome, places, copies)?;
+        }
+        let better = least(&list).filter(|point| is_better(samples, options, point, &outcome));
+        let Some(better) = better.filter(|_| restart < RESTARTS) else {
+            return Ok(Profiles {
+                outcome,
+                improved_from,
+                list,
+            });
+        };
+        improved_from = improved_from.or(Some(outcome.cost));
+        outcome = engine::fit_from(samples, options, &[better.params, outcome.params])?;
+    }
+    unreachable!("the last restart returns")
+}
+
+fn list(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: &Outcome,
+    places: &[usize],
+    copies: u32,
+) -> Result<Vec<Profile>, FitError> {
+    let each = places.par_iter();
+    each.map(|&place| profile(samples, options, outcome, place, copies))
+        .collect()
+}
+
+/// The best point of all profiles.
+fn least(list: &[Profile]) -> Option<Point> {
+    let points = list.iter().flat_map(|profile| &profile.points);
+    points.min_by(|a, b| a.cost.total_cmp(&b.cost)).copied()
+}
+
+/// Is a point better than a fit, by more than what rounding to `f32` may have left?
+fn is_better(samples: &[Sample<f64>], options: &FitOptions, point: &Point, outcome: &Outcome) -> bool {
+    let exact = engine::descend(samples, options, &[outcome.params]).ok().flatten();
+    point.cost < exact.map_or(outcome.cost, |(cost, _)| cost) * (1.0 - BETTER)
 }
 
 /// Profiles parameter `index` of the model from bound to bound, starting from a fit of these samples with these options; in `f64`.

@@ -57,7 +57,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let pool = arguments.search.pool()?;
     let fits = pool
         .install(|| joint::fit(&samples, &candidates))
-        .map_err(|(place, error)| input::explain(&measurements[place], error))?;
+        .map_err(|(place, error)| match measurements.get(place) {
+            Some(measurement) => input::explain(measurement, error),
+            None => Error::new(format!("all scans together: {error}")).help("share more parameters, or --fix some"),
+        })?;
     let best = joint::best(&fits).ok_or_else(|| Error::new("there is no model to fit"))?;
     let text = match arguments.output.format {
         Format::Text => text(&fits, best, &measurements),
@@ -125,7 +128,7 @@ fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
         rms(fitted.cost),
         rms(fitted.separate)
     ));
-    lines.push("  ± is one standard error; none where a parameter is on a bound or undetermined.".to_string());
+    lines.push("  ± is one standard error; none where a parameter is on a bound, or undetermined: its error is larger than itself.".to_string());
     if fits.len() > 1 {
         lines.extend(table(fits, best));
     }

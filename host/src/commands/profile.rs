@@ -7,12 +7,11 @@ mod text;
 use std::path::PathBuf;
 
 use clap::Args;
-use rayon::prelude::*;
 
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose;
 use crate::analysis::profile::calibrate::{LEVELS, threshold};
-use crate::analysis::profile::{End, Profile, profile};
+use crate::analysis::profile::{End, Profile, Profiles, profiles};
 use crate::engine::{FitError, FitOptions, robust};
 use crate::error::{Error, shown};
 use crate::input::{self, ReadOptions, left_out};
@@ -72,15 +71,18 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),
         };
-        let each = parameters.par_iter();
         let calibrated = arguments.calibrate.unwrap_or(0);
-        let profiles = each.map(|&index| profile(samples, &plain, &outcome, index, calibrated));
-        let profiles: Vec<Profile> = profiles.collect::<Result<_, _>>()?;
-        let copies = bootstrap(samples, &plain, &outcome, arguments.bootstrap.unwrap_or(0))?;
-        Ok(Ok((options, outcome, choice, profiles, copies)))
+        let found = profiles(samples, &plain, outcome, &parameters, calibrated)?;
+        let copies = bootstrap(samples, &plain, &found.outcome, arguments.bootstrap.unwrap_or(0))?;
+        Ok(Ok((options, choice, found, copies)))
     });
-    let (options, outcome, choice, profiles, copies) = found.map_err(|error| input::explain(&measurement, error))??;
+    let (options, choice, found, copies) = found.map_err(|error| input::explain(&measurement, error))??;
     let fail = |what: &str| Error::new(what).in_file(measurement.label());
+    let Profiles {
+        outcome,
+        improved_from,
+        list: profiles,
+    } = found;
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
     }
@@ -93,6 +95,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         name: measurement.label(),
         outcome,
         choice,
+        improved_from,
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),

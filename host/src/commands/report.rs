@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
         each.map(|Subject { measurement, stored }| {
             let section = Section::new(measurement, &wanted)?;
             if let Some(stored) = stored {
-                results::agree(&section.label, &section.fit.outcome.material(), stored)?;
+                results::agree(&section.label, &section.searched, stored)?;
             }
             Ok(section)
         })

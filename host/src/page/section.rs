@@ -16,8 +16,10 @@ const STEEPEST: u32 = 88;
 pub struct Section {
     /// File and name of the scan.
     pub label: String,
-    /// The fit.
+    /// The fit, from the best start of the survey where the search had not found it.
     pub fit: FittedScan,
+    /// What the search itself had found.
+    pub searched: Material,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
     pub survey: Outcome,
     /// The number of its starts.
@@ -52,7 +54,8 @@ impl Section {
     /// # Errors
     /// The scan cannot be fitted.
     pub fn new(measurement: &Measurement, wanted: &Wanted) -> Result<Section, Error> {
-        let fit = fit(measurement, wanted)?;
+        let mut fit = fit(measurement, wanted)?;
+        let searched = fit.outcome.material();
         let samples = robust::kept(&measurement.samples, &fit.outcome);
         let paper = FitOptions {
             method: Method::Paper,
@@ -63,11 +66,12 @@ impl Section {
         let (survey, starts) = if fit.options.method == Method::Paper {
             (fit.outcome.clone(), fit.options.starts())
         } else {
-            let survey = engine::fit(&samples, &paper);
-            (
-                survey.map_err(|error| input::explain(measurement, error))?,
-                paper.starts(),
-            )
+            let explain = |error| input::explain(measurement, error);
+            let survey = engine::fit(&samples, &paper).map_err(explain)?;
+            if survey.cost < fit.outcome.cost {
+                fit = fit.improved(measurement, &samples, survey.params).map_err(explain)?;
+            }
+            (survey, paper.starts())
         };
         Ok(Section {
             label: measurement.label(),
@@ -78,15 +82,17 @@ impl Section {
                 starts,
             ),
             fit,
+            searched,
             survey,
             starts,
         })
     }
 
-    /// Do the starts of the survey end lower than the fit, by more than rounding?
+    /// Did a start of the survey end lower than the search, by more than rounding?
     pub fn missed(&self) -> bool {
-        let least = self.survey.minima.first().map_or(f64::INFINITY, |minimum| minimum.mse2);
-        least < self.fit.outcome.mse2 * (1.0 - 1e-6)
+        self.fit
+            .improved_from
+            .is_some_and(|before| self.fit.outcome.cost < before * (1.0 - 1e-6))
     }
 }
 

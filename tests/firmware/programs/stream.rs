@@ -9,7 +9,7 @@ use brdfit_core::geometry::{Block, LANES, Observation};
 use brdfit_core::lm::{self, Fit, Options, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::Scene;
+use brdfit_core::search::{Region, Scene};
 
 use super::{P, number, plain_start, report, scan, table_1};
 
@@ -38,7 +38,7 @@ fn stream<R: Real>(out: &mut dyn Write) -> fmt::Result {
         }
         // Only the blocks that hold samples are evaluated.
         let scan = Scan::<R, ALL, P>::new(blocks.get(..row / LANES + 1).unwrap_or_default());
-        let candidate = scan.candidate(&bounds, 0, row as u64, None).x;
+        let candidate = scan.candidate(&bounds, 0, row as u64, Region::Everywhere).x;
         let start = if scan.cost(&candidate) < scan.cost(&x) {
             candidate
         } else {

@@ -40,9 +40,11 @@ pub fn thresholds(
     };
     let one = |k: u32| {
         let copy = copy(samples, &material, scale, &mut Noise::new(options.seed, u64::from(k)));
-        let outcome = engine::fit(&copy, options)?;
+        let outcome = engine::fit_from(&copy, options, &[*params])?;
         let held = hold(&copy, options, &outcome, index, value)?;
-        let best = outcome.cost.min(held.cost);
+        // What is free begins where what is held ended, and so never costs more.
+        let best = engine::descend(&copy, options, &[outcome.params, held.params])?;
+        let best = best.map_or(outcome.cost, |(cost, _)| cost.min(held.cost));
         Ok((held.cost - best) / best * outcome.uncertainty.degrees_of_freedom as f64)
     };
     let rises: Vec<f64> = (0..count).into_par_iter().map(one).collect::<Result<_, _>>()?;

@@ -10,10 +10,12 @@ use crate::input::About;
 pub struct Findings {
     /// The scan's name.
     pub name: String,
-    /// Its fit.
+    /// Its best fit.
     pub outcome: Outcome,
     /// Why that model and those terms, if the scan chose them.
     pub choice: Option<Choice>,
+    /// The cost that the search had found, if a profile met a better fit.
+    pub improved_from: Option<f64>,
     /// One for each parameter asked for.
     pub profiles: Vec<Profile>,
     /// The parameters of each copy; empty without bootstrap.

@@ -19,6 +19,10 @@ struct Document<'a> {
     /// Standard deviation of a residual of ln f.
     residual_scale: f64,
     degrees_of_freedom: usize,
+    /// Sum of squared residuals of the best fit.
+    cost: f64,
+    /// That of the search, if a profile met a better fit; else null.
+    improved_from: Option<f64>,
     selection: Option<Selection>,
     parameters: Vec<Parameter>,
     bootstrap: Option<Bootstrap>,
@@ -80,6 +84,8 @@ pub fn write(findings: &Findings) -> String {
         samples: findings.outcome.samples,
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
+        cost: findings.outcome.cost,
+        improved_from: findings.improved_from,
         selection: findings.choice.as_ref().map(selection),
         parameters: findings
             .profiles

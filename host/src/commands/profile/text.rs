@@ -30,7 +30,6 @@ pub fn write(findings: &Findings) -> String {
     }
     row(&mut page, ["", "best", "+-", "68 % interval", "95 % interval"]);
     let name = |index: usize| findings.outcome.model.parameters[index].name;
-    let mut notes = String::new();
     for profile in &findings.profiles {
         let index = profile.index;
         let [narrow, wide] = profile.intervals.map(|interval| shown(&interval));
@@ -40,14 +39,6 @@ pub fn write(findings: &Findings) -> String {
             &mut page,
             [name(index), &five(profile.best.value), &error, &narrow, &wide],
         );
-        if profile.best.cost < findings.outcome.cost * (1.0 - 1e-6) {
-            let _ = writeln!(
-                notes,
-                "  The profile of {} met a better fit than the search: MSE^2 is lower by {}.",
-                name(index),
-                percent(1.0 - profile.best.cost / findings.outcome.cost)
-            );
-        }
     }
     if !findings.copies.is_empty() {
         let _ = writeln!(
@@ -70,7 +61,13 @@ pub fn write(findings: &Findings) -> String {
         }
     }
     page.push('\n');
-    page += &notes;
+    if let Some(before) = findings.improved_from {
+        let _ = writeln!(
+            page,
+            "  A profile met a better fit than the search, with MSE^2 lower by {}; all of this is of the better one.",
+            percent(1.0 - findings.outcome.cost / before)
+        );
+    }
     page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by ";
     page += &match findings.calibrated {
         0 => "an F test.\n".to_string(),

@@ -1,0 +1,222 @@
+//! Where a candidate is: everything but its weights.
+
+use crate::lm::Bounds;
+use crate::model::{NEAR, Parameter, Role, Seen};
+use crate::real::Real;
+use crate::search::{BANDS, Region};
+use crate::start;
+
+/// (n, kappa) of the first variations of a point, in groups: a minimum has neighbours in these regimes.
+pub(crate) const INDICES: [(f64, f64); 14] = [
+    // F hardly depends on the angle.
+    (100.0, 0.0),
+    (100.0, 100.0),
+    (1.0, 100.0),
+    (1.0, 15.0),
+    (10.0, 0.0),
+    // Dielectrics.
+    FADING,
+    (1.2, 0.0),
+    (2.0, 0.0),
+    (3.5, 0.0),
+    // Metals.
+    (1.0, 5.0),
+    (1.0, 2.0),
+    (1.0, 0.5),
+    (1.5, 1.5),
+    (4.0, 4.0),
+];
+/// Where these groups end.
+pub(crate) const GROUPS: [u32; 3] = [5, 9, INDICES.len() as u32];
+/// Stands for an index that [`crate::model::Model::fade`] moves.
+const FADING: (f64, f64) = (1.0, 0.0);
+/// Where that begins: kappa^2, or n where kappa cannot be so large.
+const FADE_FROM: (f64, f64) = (0.1, 1.3);
+/// Shares of the regimes of the index: kappa = 0, n = 1, both in the corner where F vanishes; the rest has both.
+const REGIMES: [f64; 3] = [0.3, 0.25, 0.1];
+/// Share of the candidates that have slopes from pairs of samples.
+const PAIRS: f64 = 0.25;
+/// Independent numbers of a candidate, beside its point in an even sequence.
+const NUMBERS: usize = 8;
+
+/// Sets what is no weight to candidate `i` of the sequence of `seed`; true if it is meant for [`crate::model::Model::fade`].
+pub(crate) fn shapes<R: Real, const P: usize>(
+    x: &mut [R; P],
+    parameters: &[Parameter; P],
+    bounds: &Bounds<R, P>,
+    (seed, i): (u64, u64),
+    seen: &Seen<R>,
+    region: Region<R, P>,
+) -> bool {
+    // The first three take an even sequence; points of one in more dimensions would be further apart in these.
+    let even = start::even::<R>(seed, i);
+    let own = start::unit::<R, P>(seed, i);
+    let numbers = start::unit::<R, NUMBERS>(seed ^ 0x55, i);
+    let mut even = even.into_iter();
+    let mut of_index = [numbers[6], numbers[7]];
+    let mut slopes = 0;
+    for (k, parameter) in parameters.iter().enumerate() {
+        if parameter.is_weight() {
+            continue;
+        }
+        let u = even.next().unwrap_or(own[k]);
+        match parameter.role {
+            Role::Index => of_index[0] = u,
+            Role::Absorption => of_index[1] = u,
+            Role::Slope => {
+                let spread = between(parameter, bounds, k, seen.finest, in_band(u, region, slopes));
+                x[k] = slope(spread, seen, &numbers, region, k);
+                slopes += 1;
+            }
+            _ => {
+                let spread = between(parameter, bounds, k, R::ZERO, u);
+                x[k] = like(region).map_or(spread, |like| like[k]);
+            }
+        }
+    }
+    let has_index = parameters.iter().any(|parameter| matches!(parameter.role, Role::Index));
+    if !has_index {
+        if let Region::Index(like) = region {
+            vary(x, parameters, bounds, like, &own);
+        }
+        return false;
+    }
+    index(x, parameters, bounds, of_index, i, region)
+}
+
+/// The point that a region is about.
+fn like<'a, R, const P: usize>(region: Region<'a, R, P>) -> Option<&'a [R; P]> {
+    match region {
+        Region::Index(like) | Region::Slopes(like) => Some(like),
+        _ => None,
+    }
+}
+
+/// The place within the whole range from that within the band; only the first slope is kept to it.
+fn in_band<R: Real, const P: usize>(u: R, region: Region<R, P>, slopes: usize) -> R {
+    match region {
+        Region::Band(band) if slopes == 0 => (R::of(f64::from(band)) + u) / R::of(f64::from(BANDS)),
+        _ => u,
+    }
+}
+
+/// A slope: `spread`, or what a pair of samples tells, or that of the region's point.
+fn slope<R: Real, const P: usize>(
+    spread: R,
+    seen: &Seen<R>,
+    numbers: &[R; NUMBERS],
+    region: Region<R, P>,
+    k: usize,
+) -> R {
+    let of_pair = || pair(seen, [numbers[0], numbers[1], numbers[2]]);
+    match region {
+        Region::Index(like) => like[k],
+        Region::Slopes(like) => of_pair().unwrap_or_else(|| like[k] * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp()),
+        Region::Everywhere if numbers[4] < R::of(PAIRS) => of_pair().unwrap_or(spread),
+        _ => spread,
+    }
+}
+
+/// The slope m of a peak of which two samples see nothing else: m^2 is the difference of tan^2 theta_h over that of ln f.
+fn pair<R: Real>(seen: &Seen<R>, [lobe, first, second]: [R; 3]) -> Option<R> {
+    let near = &seen.near[usize::from(lobe > R::of(0.7))];
+    // The first is more often one of the nearest.
+    let pick = |u: R| near[((u.f64() * NEAR as f64) as usize).min(NEAR - 1)];
+    let (a, b) = (pick(first * first), pick(second));
+    let m2 = (b.0 - a.0) / (a.1 - b.1);
+    (m2 > R::ZERO && m2.is_finite()).then(|| m2.sqrt())
+}
+
+/// A value of a parameter at `u` of its range, from 0 to 1; evenly in the logarithm if it is above 0.
+fn between<R: Real, const P: usize>(parameter: &Parameter, bounds: &Bounds<R, P>, k: usize, finest: R, u: R) -> R {
+    let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
+    let (least, most) = (R::of(parameter.spread.0).max(finest), R::of(parameter.spread.1));
+    let from = lower.max(least).min(upper);
+    let to = upper.min(most).max(lower);
+    if from > R::ZERO {
+        log_between(from, to, u)
+    } else {
+        from + (to - from) * u
+    }
+}
+
+/// Sets n and kappa^2.
+fn index<R: Real, const P: usize>(
+    x: &mut [R; P],
+    parameters: &[Parameter; P],
+    bounds: &Bounds<R, P>,
+    [u, regime]: [R; 2],
+    i: u64,
+    region: Region<R, P>,
+) -> bool {
+    // Evenly in 1/n and in 1/(1 + kappa): F at large n and kappa is a function of the inverse, nearly linear.
+    let (n_alone, kappa_alone) = (R::ONE / (R::ONE - R::of(0.99) * u), u / (R::ONE - R::of(0.99) * u));
+    let shares = REGIMES.map(R::of);
+    let steps = [shares[0], shares[0] + shares[1], shares[0] + shares[1] + shares[2]];
+    let (mut n, mut kappa2) = (None, None);
+    let mut fades = false;
+    let listed = usize::try_from(i).ok().and_then(|i| INDICES.get(i));
+    match (region, listed) {
+        (Region::Index(_), Some(&(listed_n, listed_kappa))) => {
+            (n, kappa2) = (Some(R::of(listed_n)), Some(R::of(listed_kappa * listed_kappa)));
+            fades = (listed_n, listed_kappa) == FADING;
+        }
+        (Region::Slopes(_), _) if i % 4 == 1 => fades = true,
+        _ if regime < steps[0] => (n, kappa2) = (Some(n_alone), Some(R::ZERO)),
+        _ if regime < steps[1] => (n, kappa2) = (Some(R::ONE), Some(kappa_alone * kappa_alone)),
+        _ if regime < steps[2] => fades = true,
+        _ => {}
+    }
+    let rest = (regime - steps[2]) / (R::ONE - steps[2]);
+    for (k, parameter) in parameters.iter().enumerate() {
+        let (chosen, u, fading) = match parameter.role {
+            Role::Index => (n, u, R::ONE),
+            Role::Absorption => (kappa2, rest, R::of(FADE_FROM.0)),
+            _ => continue,
+        };
+        x[k] = match (region, chosen) {
+            (Region::Slopes(like), _) if i % 2 == 0 => like[k],
+            _ if fades => fading.max(bounds.lower[k]).min(bounds.upper[k]),
+            (_, Some(value)) => value.max(bounds.lower[k]).min(bounds.upper[k]),
+            _ => between(parameter, bounds, k, R::ZERO, u.max(R::ZERO)),
+        };
+    }
+    if fades {
+        fade_by_n(x, parameters, bounds);
+    }
+    fades
+}
+
+/// Where kappa cannot be what a fading index begins with, n is.
+fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], bounds: &Bounds<R, P>) {
+    let place = |role: Role| parameters.iter().position(|parameter| parameter.role == role);
+    let absorbs = place(Role::Absorption).is_some_and(|k| x[k] >= R::of(FADE_FROM.0));
+    if let Some(n) = place(Role::Index).filter(|_| !absorbs) {
+        x[n] = R::of(FADE_FROM.1).max(bounds.lower[n]).min(bounds.upper[n]);
+    }
+}
+
+/// Without an index, a minimum has neighbours anywhere: everything stays within a factor of e.
+fn vary<R: Real, const P: usize>(
+    x: &mut [R; P],
+    parameters: &[Parameter; P],
+    bounds: &Bounds<R, P>,
+    like: &[R; P],
+    own: &[R; P],
+) {
+    for (k, parameter) in parameters.iter().enumerate() {
+        if !parameter.is_weight() {
+            let factor = (own[k] + own[k] - R::ONE).exp();
+            x[k] = (like[k] * factor).max(bounds.lower[k]).min(bounds.upper[k]);
+        }
+    }
+}
+
+/// Between two positive numbers, evenly in the logarithm.
+fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
+    if !(lower < upper) {
+        return lower;
+    }
+    let (a, b) = (lower.ln(), upper.ln());
+    (a + (b - a) * u).exp()
+}

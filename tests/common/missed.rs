@@ -1,0 +1,252 @@
+//! The default search beside the best that many methods find, on random scans of every kind.
+
+use std::cell::Cell;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use brdfit_core::brdf::{ALL, Params};
+use brdfit_core::geometry::{Block, LANES, Sample};
+use brdfit_core::lm::{self, Bounds, Fit, Linearization, Options, Problem};
+use brdfit_core::microfacet::Microfacet;
+use brdfit_core::real::Real;
+use brdfit_core::residuals::{Scan, observe};
+use brdfit_core::search::{self, Candidate, Region, Scene};
+
+use crate::hard_scenes::{Kind, Task, task};
+use crate::random_scenes::brute;
+
+/// A search that ends by more than this part above the least cost known has missed it.
+pub const MISSED: f64 = 1e-4;
+/// Candidates, and mixed starts, of the searches that the default one is compared with.
+const THOROUGH: (u32, u64) = (2000, 120);
+/// Their seed, which is none of those that are judged.
+const OTHER_SEED: u64 = 77;
+
+type Eq14<'a, R> = Scan<'a, R, ALL, 6>;
+
+/// What one search made of a scan.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended {
+    /// Its cost; that of a search in single precision after a fit in double precision from its end.
+    pub cost: f64,
+    /// Passes; one without derivatives counts half.
+    pub passes: f64,
+    /// Passes until the cost was within 1 % of the least known; infinite if it never was.
+    pub until: f64,
+}
+
+/// What became of the scans of a kind.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    /// Searches.
+    pub fits: usize,
+    /// Scan and excess of those that ended above the least cost known.
+    pub missed: Vec<(u64, f64)>,
+    /// Passes in the mean.
+    pub mean: f64,
+    /// Passes at most.
+    pub most: f64,
+    /// Passes until within 1 %, the median.
+    pub until: f64,
+}
+
+/// The least costs known of the first scans of a kind, kept in a file of a folder.
+pub struct Known {
+    file: PathBuf,
+    costs: Vec<f64>,
+}
+
+impl Known {
+    /// What the folder has; the first lines of it are still right for more scans.
+    pub fn read(folder: &Path, kind: Kind) -> Self {
+        let file = folder.join(format!("{kind:?}.csv"));
+        let text = fs::read_to_string(&file).unwrap_or_default();
+        let cost = |line: &str| line.split(',').next().and_then(|cost| cost.parse().ok());
+        let costs = text.lines().map_while(cost).collect();
+        Known { file, costs }
+    }
+
+    /// How many scans it has.
+    pub fn len(&self) -> u64 {
+        self.costs.len() as u64
+    }
+
+    /// Has it none?
+    pub fn is_empty(&self) -> bool {
+        self.costs.is_empty()
+    }
+
+    /// Adds the next scan.
+    pub fn push(&mut self, cost: f64) {
+        self.costs.push(cost);
+    }
+
+    /// Lowers the cost of a scan to what was found.
+    pub fn lower(&mut self, k: u64, cost: f64) {
+        if let Some(old) = self.costs.get_mut(k as usize) {
+            *old = old.min(cost);
+        }
+    }
+
+    /// The least cost of a scan.
+    pub fn cost(&self, k: u64) -> f64 {
+        self.costs.get(k as usize).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Writes the file.
+    pub fn write(&self) {
+        let lines: String = self.costs.iter().map(|cost| format!("{cost:e}\n")).collect();
+        if let Some(folder) = self.file.parent() {
+            fs::create_dir_all(folder).expect("target is writable");
+        }
+        fs::write(&self.file, lines).expect("target is writable");
+    }
+}
+
+/// The least cost that thorough methods find: the default search with many candidates, and mixed starts.
+pub fn thorough(kind: Kind, k: u64) -> f64 {
+    let task = task(kind, k);
+    let (candidates, starts) = THOROUGH;
+    let found = search_in::<f64>(&task, OTHER_SEED, candidates, 0.0).cost;
+    let blocks = blocks::<f64>(&task.samples);
+    found.min(brute(&Eq14::<f64>::new(&blocks), &bounds(&task), starts, k))
+}
+
+/// The search of scan `k` of a kind with at most `candidates`; `least` is the least cost known.
+pub fn ended(kind: Kind, k: u64, seed: u64, candidates: u32, least: f64) -> Ended {
+    let task = task(kind, k);
+    match kind {
+        Kind::Single => search_in::<f32>(&task, seed, candidates, least),
+        _ => search_in::<f64>(&task, seed, candidates, least),
+    }
+}
+
+/// What became of scans, given scan and end of each search.
+pub fn row(known: &Known, ended: &[(u64, Ended)]) -> Row {
+    let excess = |&(k, ended): &(u64, Ended)| (k, ended.cost / known.cost(k) - 1.0);
+    let mut until: Vec<f64> = ended.iter().map(|(_, ended)| ended.until).collect();
+    until.sort_by(f64::total_cmp);
+    Row {
+        fits: ended.len(),
+        missed: ended
+            .iter()
+            .map(excess)
+            .filter(|&(_, excess)| excess > MISSED)
+            .collect(),
+        mean: ended.iter().map(|(_, ended)| ended.passes).sum::<f64>() / ended.len().max(1) as f64,
+        most: ended.iter().map(|(_, ended)| ended.passes).fold(0.0, f64::max),
+        until: until.get(until.len() / 2).copied().unwrap_or(f64::NAN),
+    }
+}
+
+/// A line of the table.
+pub fn line(out: &mut String, name: &str, row: &Row) {
+    let _ = writeln!(
+        out,
+        "| {name} | {} | {} | {:.0} | {:.0} | {:.0} |",
+        row.fits,
+        row.missed.len(),
+        row.mean,
+        row.most,
+        row.until
+    );
+}
+
+fn blocks<R: Real>(samples: &[Sample<f64>]) -> Vec<Block<R, LANES, 6>> {
+    let mut blocks = vec![Block::EMPTY; samples.len().div_ceil(LANES)];
+    for (place, sample) in samples.iter().enumerate() {
+        let sample = Sample {
+            theta_i: R::of(sample.theta_i),
+            theta_s: R::of(sample.theta_s),
+            delta_phi: R::of(sample.delta_phi),
+            brdf: R::of(sample.brdf),
+            weight: R::of(sample.weight),
+        };
+        let observation = observe::<R, Microfacet<ALL>, 6, 6>(&sample).expect("scenes are valid");
+        blocks[place / LANES].set(place % LANES, &observation);
+    }
+    blocks
+}
+
+fn bounds<R: Real>(task: &Task) -> Bounds<R, 6> {
+    let side = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
+    Eq14::<R>::bounds(&side(&task.lower), &side(&task.upper))
+}
+
+fn search_in<R: Real>(task: &Task, seed: u64, candidates: u32, least: f64) -> Ended {
+    let own = blocks::<R>(&task.samples);
+    let watched = Watched {
+        scan: Eq14::<R>::new(&own),
+        within: least * 1.01,
+        passes: Cell::new(0.0),
+        until: Cell::new(f64::INFINITY),
+    };
+    let found = search::search(&watched, &bounds::<R>(task), seed, candidates, &Options::default());
+    let mut cost = found.best.at.cost.f64();
+    if size_of::<R>() < size_of::<f64>() {
+        let exact = blocks::<f64>(&task.samples);
+        let (scan, bounds) = (Eq14::<f64>::new(&exact), bounds::<f64>(task));
+        let fit: Fit<f64, 6> = lm::fit(&scan, &bounds, found.best.x.map(R::f64), &Options::default());
+        cost = fit.at.cost;
+    }
+    Ended {
+        cost,
+        passes: watched.passes.get(),
+        until: watched.until.get(),
+    }
+}
+
+/// A scan that counts passes.
+struct Watched<'a, R> {
+    scan: Eq14<'a, R>,
+    within: f64,
+    passes: Cell<f64>,
+    until: Cell<f64>,
+}
+
+impl<R: Real> Watched<'_, R> {
+    fn count(&self, passes: f64) {
+        self.passes.set(self.passes.get() + passes);
+    }
+    fn note(&self, cost: R) {
+        if cost.f64() <= self.within && self.until.get().is_infinite() {
+            self.until.set(self.passes.get());
+        }
+    }
+}
+
+impl<R: Real> Problem<R, 6> for Watched<'_, R> {
+    fn cost(&self, x: &[R; 6]) -> R {
+        let cost = self.scan.cost(x);
+        self.count(0.5);
+        self.note(cost);
+        cost
+    }
+    fn linearize(&self, x: &[R; 6]) -> Linearization<R, 6> {
+        let at = self.scan.linearize(x);
+        self.count(1.0);
+        self.note(at.cost);
+        at
+    }
+    fn bend(&self, x: &[R; 6], step: &[R; 6], to: [R; 6]) -> [R; 6] {
+        self.scan.bend(x, step, to)
+    }
+}
+
+impl<R: Real> Scene<R, 6> for Watched<'_, R> {
+    fn candidate(&self, bounds: &Bounds<R, 6>, seed: u64, i: u64, region: Region<R, 6>) -> Candidate<R, 6> {
+        let candidate = self.scan.candidate(bounds, seed, i, region);
+        self.count(0.5 * f64::from(candidate.passes));
+        candidate
+    }
+    fn level(&self, bounds: &Bounds<R, 6>, x: &[R; 6]) -> ([R; 6], R) {
+        let (x, cost) = self.scan.level(bounds, x);
+        self.count(0.5);
+        self.note(cost);
+        (x, cost)
+    }
+    fn apart(&self, x: &[R; 6], y: &[R; 6], factor: R) -> bool {
+        self.scan.apart(x, y, factor)
+    }
+}

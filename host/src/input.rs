@@ -9,6 +9,7 @@ pub mod bytes;
 mod channel;
 pub mod check;
 pub mod columns;
+mod cut;
 mod direction;
 mod doubt;
 mod facts;
@@ -28,6 +29,7 @@ pub mod role;
 mod rows;
 mod sheet;
 pub mod side;
+pub mod source;
 mod table;
 pub mod uncertainty;
 pub mod unit;
@@ -50,6 +52,7 @@ use format::Format;
 pub use left_out::LeftOut;
 pub use options::{ReadAs, ReadOptions};
 use raw::RawScan;
+use source::Source;
 pub use units::azimuth;
 
 /// A scan as it was read.
@@ -194,7 +197,10 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
         options.refuse_for(scan.about.kind, format)?;
     }
     let mut scans = raw::select(scans, &options.column)?;
+    cut::suspect(format, bytes, &mut scans);
     for scan in &mut scans {
+        scan.about.sources.push(Source::new(file, bytes));
+        scan.about.asked = options.clone();
         about::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;
@@ -224,6 +230,7 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .at_line(measurement.lines[index])
             .help("take f64, or leave out the row"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
-        FitError::Terms(_) => plain,
+        FitError::Terms(_) | FitError::Interrupted => plain,
+        FitError::NoProof(_) => plain.help("only the model of Eq. 14 has a proof"),
     }
 }

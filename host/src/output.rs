@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::input::STDIN;
 use crate::interrupt;
 use crate::plain;
-use crate::target::Target;
+use crate::target::{Target, stdout_is_no_input};
 
 /// In which form a result leaves, and where to: options of most commands.
 #[derive(Args, Debug)]
@@ -87,12 +87,15 @@ pub fn write_row(writer: &mut csv::Writer<impl Write>, row: &[impl AsRef<str>]) 
 /// Where a result goes: a file that may be written, or standard output for none or `-`.
 ///
 /// # Errors
-/// As [`Target::new`].
+/// As [`Target::new`], and if standard output goes to one of the inputs.
 pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option<Target>, Error> {
     let target = path
         .filter(|path| path.as_os_str() != STDIN)
         .map(|path| Target::new(path, inputs))
         .transpose()?;
+    if target.is_none() {
+        stdout_is_no_input(inputs)?;
+    }
     interrupt::await_reader(target.is_none());
     Ok(target)
 }

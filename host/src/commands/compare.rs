@@ -15,6 +15,7 @@ use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
@@ -140,7 +141,7 @@ fn json(measurement: &Measurement, fits: &[Judged]) -> String {
             })
         })
         .collect();
-    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
+    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models, "provenance": provenance(&measurement.about, None) });
     output::json(&value)
 }
 

@@ -17,6 +17,7 @@ use crate::options::all_parameters;
 use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::parameters::model;
 use crate::plot::{self, picture};
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 use crate::terms::terms;
 
@@ -96,7 +97,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     bar.finish_and_clear();
     let text = match arguments.output.format {
         TableFormat::Text => write::text(&studies, arguments.seeds),
-        TableFormat::Json => write::json(&studies, arguments.seeds),
+        TableFormat::Json => {
+            let read = measurement.as_ref().map(|read| provenance(&read.about, None));
+            write::json(&studies, arguments.seeds, read)
+        }
         TableFormat::Csv => write::csv(&studies),
     };
     if let Some(picture) = &picture {

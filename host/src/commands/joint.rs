@@ -15,6 +15,7 @@ use crate::options::SearchArguments;
 use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -120,6 +121,7 @@ fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
+                "provenance": provenance(&measurement.about, Some(options)),
             })
         })
         .collect();

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::batch::own;
-use super::batch::record::{self, Head, Record};
 use super::batch::results::Form;
-use super::batch::shard::Shard;
 use crate::error::Error;
 use crate::output;
+use crate::records::own;
+use crate::records::record::{self, Head, Record};
+use crate::records::shard::Shard;
 use crate::streams::{Ended, Streams};
 
 /// Makes one result of the parts of a batch

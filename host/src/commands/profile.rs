@@ -95,7 +95,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),
-        seed: options.seed,
+        options,
+        about: measurement.about.clone(),
     };
     let written = match arguments.output.format {
         Format::Text => text::write(&findings),

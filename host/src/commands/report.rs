@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
 use crate::output;
-use crate::page::provenance::{self, Source};
+use crate::page::provenance;
 use crate::page::section::Section;
 use crate::page::{html, results};
 use crate::plot::picture;
@@ -46,7 +46,6 @@ pub struct Arguments {
 #[derive(Clone)]
 struct Subject {
     measurement: Measurement,
-    source: Source,
     /// What its results say.
     stored: Option<Material>,
 }
@@ -76,19 +75,13 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     }
     let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| {
         let each = subjects.par_iter();
-        each.map(
-            |Subject {
-                 measurement,
-                 source,
-                 stored,
-             }| {
-                let section = Section::new(measurement, source, &options)?;
-                if let Some(stored) = stored {
-                    results::agree(&section.label, &section.fit.outcome.material(), stored)?;
-                }
-                Ok(section)
-            },
-        )
+        each.map(|Subject { measurement, stored }| {
+            let section = Section::new(measurement, &options)?;
+            if let Some(stored) = stored {
+                results::agree(&section.label, &section.fit.outcome.material(), stored)?;
+            }
+            Ok(section)
+        })
         .collect()
     });
     let sections: Vec<Section> = sections.into_iter().collect::<Result<_, _>>()?;
@@ -105,10 +98,8 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
 
 /// The scans in the bytes of a file.
 fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>, Error> {
-    let source = Source::new(bytes);
     let subject = |measurement| Subject {
         measurement,
-        source: source.clone(),
         stored: None,
     };
     Ok(input::parse(name, bytes, options)?.into_iter().map(subject).collect())

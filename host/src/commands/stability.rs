@@ -5,14 +5,16 @@ mod text;
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
-use crate::analysis::stability::assess::assess;
+use crate::analysis::stability::assess::{Assessment, assess};
 use crate::analysis::stability::built_in;
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::output::{Format, OutputArguments, deliver, json};
 use crate::parameters::model;
+use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;
 use crate::terms::terms;
 
@@ -33,6 +35,14 @@ pub struct Arguments {
     output: OutputArguments,
     #[command(flatten)]
     read: ReadOptions,
+}
+
+/// The assessment of a scan, and where that is from.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    assessment: &'a Assessment,
+    provenance: Provenance<'a>,
 }
 
 /// Runs the subcommand.
@@ -57,11 +67,16 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             };
             let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;
-            left_out::note(&[measurement], streams.errors);
-            match arguments.output.format {
+            let provenance = provenance(&measurement.about, None);
+            let text = match arguments.output.format {
                 Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
-                Format::Json => json(&case),
-            }
+                Format::Json => json(&Document {
+                    assessment: &case,
+                    provenance,
+                }),
+            };
+            left_out::note(std::slice::from_ref(&measurement), streams.errors);
+            text
         }
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)

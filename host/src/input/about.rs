@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::facts;
 use super::options::ReadOptions;
 use super::raw::RawScan;
+use super::source::Source;
 use super::units::Angles;
 use crate::error::Error;
 use crate::plain::some_of;
@@ -32,6 +33,12 @@ pub struct About {
     pub sigma_ln: Option<f64>,
     /// What was done to the numbers, such as angles of a full turn that became negative.
     pub notes: Vec<String>,
+    /// What may be wrong with the file; this is among the notes too.
+    pub doubts: Vec<String>,
+    /// The files of the scan, in order.
+    pub sources: Vec<Source>,
+    /// What the user said about them.
+    pub asked: ReadOptions,
 }
 
 impl About {
@@ -54,6 +61,9 @@ impl Default for About {
             divisor: 1.0,
             sigma_ln: None,
             notes: Vec::new(),
+            doubts: Vec::new(),
+            sources: Vec::new(),
+            asked: ReadOptions::default(),
         }
     }
 }

@@ -13,6 +13,7 @@ use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight;
 use crate::error::Error;
+use crate::number::shortest;
 
 /// The measurement in a scan of `file`.
 ///
@@ -127,7 +128,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
         if !angle.is_finite() {
-            return invalid(column, format!("{name} is {angle}, which is not an angle"));
+            return invalid(column, format!("{name} is {}, which is not an angle", shortest(angle)));
         }
     }
     let mut sample = Sample {
@@ -153,7 +154,10 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
                 Angles::Deg => "degrees",
                 Angles::Rad => "radians",
             };
-            return invalid(column, format!("{name} is {angle} {unit}, at or beyond the horizon"));
+            return invalid(
+                column,
+                format!("{name} is {} {unit}, at or beyond the horizon", shortest(angle)),
+            );
         }
     }
     sample.brdf = match read_as.quantity.brdf(row.value / divisor, sample.theta_s) {
@@ -231,7 +235,12 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     let sigma = match known {
         Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
         Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
-        Weight::Factor(factor) => return Err(format!("the weight is {factor}, and must be a number from 0 on")),
+        Weight::Factor(factor) => {
+            return Err(format!(
+                "the weight is {}, and must be a number from 0 on",
+                shortest(factor)
+            ));
+        }
         Weight::RelativeSigma(sigma) => sigma,
         Weight::Sigma(sigma) => match quantity.is_logarithm() {
             Some(factor) => sigma * factor,
@@ -242,7 +251,10 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     if sigma >= 0.0 && whole >= f64::MIN_POSITIVE && whole.is_finite() {
         Ok((1.0 / whole, weight::Source::Sigma))
     } else {
-        let what = format!("the relative standard deviation is {sigma}, which gives no weight");
+        let what = format!(
+            "the relative standard deviation is {}, which gives no weight",
+            shortest(sigma)
+        );
         Err(what + " (--sigma-floor 0.01 or --weights equal would)")
     }
 }

@@ -6,6 +6,7 @@ use super::rows;
 use super::unit::Unit;
 use super::wavelength;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// What the remarks of a file say.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -199,7 +200,7 @@ pub fn missing_theta_i(names: &[String]) -> Error {
     let among = if named.is_empty() {
         String::new()
     } else {
-        format!(" among the columns {}", named.join(", "))
+        format!(" among the columns {}", some_of(&named))
     };
     Error::new(format!(
         "no column theta_i_deg{among}, and neither a remark nor the name of the file gives the angle of incidence"

@@ -394,7 +394,7 @@ impl<'a> Reader<'a> {
             angles_named: columns.angles_named,
             divisor: value.divisor,
             sigma_ln: None,
-            notes: Vec::new(),
+            ..About::default()
         }
     }
 

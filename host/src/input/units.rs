@@ -4,6 +4,8 @@ use brdfit_core::real::Real;
 use clap::ValueEnum;
 use serde::Serialize;
 
+use crate::number::shortest;
+
 /// The unit of angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -165,7 +167,7 @@ impl Quantity {
     /// # Errors
     /// Why the value has none: it is not positive, or no number of the machine.
     pub fn brdf(self, value: f64, theta_s: f64) -> Result<f64, String> {
-        let fail = |why: &str| Err(format!("{} is {value}, {why}", self.title()));
+        let fail = |why: &str| Err(format!("{} is {}, {why}", self.title(), shortest(value)));
         if !value.is_finite() {
             return fail("which is not a number");
         }

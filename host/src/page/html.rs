@@ -262,8 +262,10 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (plain(&fit.file)) ", " (section.source.bytes) " bytes" } }
-                tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
+                @for source in &fit.about.sources {
+                    tr { th.text { "input" } td.text { (plain(&source.file)) ", " (source.bytes) " bytes" } }
+                    tr { th.text { "SHA-256" } td.text { code { (source.sha256) } } }
+                }
                 tr { th.text { "read as" } td.text { (fit.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }

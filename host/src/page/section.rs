@@ -1,6 +1,5 @@
 //! One scan: its fit, the fits from all starts, and what is drawn of both.
 
-use super::provenance::Source;
 use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
@@ -16,8 +15,6 @@ const STEEPEST: u32 = 88;
 pub struct Section {
     /// File and name of the scan.
     pub label: String,
-    /// Its file.
-    pub source: Source,
     /// The fit.
     pub fit: FittedScan,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
@@ -53,7 +50,7 @@ impl Section {
     ///
     /// # Errors
     /// The scan cannot be fitted.
-    pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
+    pub fn new(measurement: &Measurement, options: &FitOptions) -> Result<Section, Error> {
         let fit = fit(measurement, options)?;
         let samples = robust::kept(&measurement.samples, &fit.outcome);
         let paper = FitOptions {
@@ -73,7 +70,6 @@ impl Section {
         };
         Ok(Section {
             label: measurement.label(),
-            source: source.clone(),
             figures: figures(
                 &plot::Drawn::of_fit(measurement, &fit.outcome).data(),
                 &fit,

@@ -2,6 +2,7 @@
 
 mod by_name;
 mod choice;
+pub mod provenance;
 mod uncertainty;
 
 use serde::ser::SerializeMap;
@@ -16,6 +17,7 @@ use crate::input::{LeftOut, ReadAs};
 use crate::output;
 pub use by_name::ByName;
 use choice::{Selection, selection};
+use provenance::{Provenance, provenance};
 use uncertainty::{AtAngle, Known, at_angle, known};
 
 #[derive(Serialize)]
@@ -45,6 +47,7 @@ struct Document<'a> {
     /// What a person would say.
     #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
     hints: &'a [Hint],
+    provenance: Provenance<'a>,
     #[serde(flatten)]
     time: Columns<'a>,
 }
@@ -111,6 +114,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
             linearize: outcome.evaluations.linearize,
         },
         hints: &scan.hints,
+        provenance: provenance(&scan.about, Some(&scan.options)),
         time: Columns(scan, Json::Time),
     }
 }

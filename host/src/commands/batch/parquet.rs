@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
-use super::record::{RowsIn, cells};
+use crate::records::record::{RowsIn, cells};
 use crate::result::cell::{Cell, Kind};
 
 /// Rows that are in memory at once.
@@ -109,7 +109,7 @@ mod tests {
     use parquet::record::Field;
 
     use super::*;
-    use crate::commands::batch::record::Written;
+    use crate::records::record::Written;
 
     #[test]
     fn reads_back() {

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::record::{Record, Rows, RowsIn, Written, cells};
 use crate::error::Error;
 use crate::input::STDIN;
 use crate::output::write_row;
+use crate::records::record::{Record, Rows, RowsIn, Written, cells};
 use crate::result::cell::{Cell, Kind};
 
 /// The form of the file of results.

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::journal::Journal;
-use super::record::{Line, Record, Rows, ScanRecord, Written, fingerprint};
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
 use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
+use crate::records::journal::Journal;
+use crate::records::record::{Line, Record, Rows, ScanRecord, Written, fingerprint};
 use crate::result;
 use crate::result::cell::{Cell, Kind};
 use crate::result::columns::{Column, Json, of_fits};
@@ -69,6 +69,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
         }
         Some(match fit(&measurement, &job.options) {
             Ok(scan) => fitted(job, scan, &measurement),
+            Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
         })
     };

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::record::{Line, Record};
 use crate::error::Error;
 use crate::number::shortest;
+use crate::records::record::{Line, Record};
 use crate::streams::{Ended, Streams};
 
 /// Lines that are printed; means are over all.

@@ -49,7 +49,7 @@ pub fn write(findings: &Findings) -> String {
             page,
             "\n  bootstrap: {} copies, seed {}",
             findings.copies.len(),
-            findings.seed
+            findings.options.seed
         );
         for profile in &findings.profiles {
             let index = profile.index;
@@ -69,7 +69,7 @@ pub fn write(findings: &Findings) -> String {
     page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by ";
     page += &match findings.calibrated {
         0 => "an F test.\n".to_string(),
-        copies => format!("{copies} copies, seed {}.\n", findings.seed),
+        copies => format!("{copies} copies, seed {}.\n", findings.options.seed),
     };
     page += "  (bound) marks an end that the bound of the parameter sets, not the data.\n";
     page

@@ -196,7 +196,7 @@ pub fn agree(found: &Head, wanted: &Head, file: &Path, help: &str) -> Result<(),
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// Of a batch of one file.

@@ -1,6 +1,6 @@
 //! Which model each measured scan needs, as `brdfit fit --model auto` tells: `cargo run --release --example models > benches/results/models.md`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use brdfit::analysis::choose::{Choice, choose};
 use brdfit::engine::FitOptions;
@@ -20,7 +20,7 @@ fn main() {
         .filter(|path| path.extension().is_some_and(|ending| ending == "csv"))
         .collect();
     files.sort();
-    let scans: Vec<(String, Measurement, Choice)> = files.iter().map(chosen).collect();
+    let scans: Vec<(String, Measurement, Choice)> = files.iter().map(|file| chosen(file)).collect();
     println!("# Which model the measured scans need\n");
     println!(
         "The choice of `brdfit fit --model auto`: the least BIC of all {} models.",
@@ -79,7 +79,7 @@ fn names(scans: &[(String, Measurement, Choice)], cell: impl Fn(&str, &Choice) -
 }
 
 /// The name of a scan, the scan, and the choice of its model.
-fn chosen(file: &PathBuf) -> (String, Measurement, Choice) {
+fn chosen(file: &Path) -> (String, Measurement, Choice) {
     let name = file.file_stem().map(|name| name.to_string_lossy().into_owned());
     let scan = read_file(file, &ReadOptions::default(), &mut std::io::empty())
         .unwrap_or_else(|error| panic!("{error}"))

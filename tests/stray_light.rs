@@ -85,7 +85,7 @@ fn k_correlation(x: &[f64], shift: f64, cosines: f64) -> Exact {
         let length = big(1.0) / big(term[1]);
         let place = [big(term[0]), length.clone(), big(term[2])];
         let (f, [by_a, by_length, by_c], logarithm) = shoulder(place, &big(shift), &big(cosines));
-        exact.f = exact.f + f;
+        exact.f += f;
         exact.slopes.extend([by_a, -by_length * length.clone() * length, by_c]);
         exact.logarithm = exact.logarithm.min(logarithm);
     }

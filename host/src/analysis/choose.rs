@@ -43,6 +43,7 @@ const fn tested_against(terms: u8) -> Option<u8> {
 }
 
 /// What a scan is to be fitted with.
+#[allow(clippy::large_enum_variant, reason = "there is one of it a command")]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
     /// One model.

@@ -12,10 +12,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use brdfit::cli;
-use brdfit::engine::ln_f;
 use brdfit::interrupt;
 use brdfit::streams::Streams;
-use brdfit_core::brdf::Params;
+use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::Geometry;
 use brdfit_core::real::Real;
 
@@ -133,11 +132,12 @@ fn scan(index: usize) -> String {
         n: 1.4 + part(0.819_172_513_396),
         kappa: 0.0,
     };
+    let brdf = Brdf::<f64, ALL>::new(&params);
     let mut text = String::from("theta_i_deg,theta_s_deg,brdf_per_sr\n");
-    for theta_s in (-80..=80).step_by(4) {
+    for theta_s in (-80i32..=80).step_by(4) {
         let angles = [45.0, f64::from(theta_s)].map(f64::to_radians);
         let geometry = Geometry::new(angles[0], angles[1], f64::PI).expect("above the horizon");
-        let f = Real::exp(ln_f(&params, &geometry)) * (1.0 + 0.02 * noise(index, theta_s as usize));
+        let f = Real::exp(brdf.ln_f(&geometry)) * (1.0 + 0.02 * noise(index, theta_s as usize));
         let _ = writeln!(text, "45,{theta_s},{f:.6e}");
     }
     text

@@ -164,8 +164,14 @@ fn good_files_have_no_hints() {
     for file in good_files() {
         let found = json(&["inspect", &file]);
         let hints = hints(&found);
-        // The tape reflects back, and is known to.
         assert!(hints.is_empty(), "{file}: {hints:?}");
+    }
+    // Another model does fit some of the measured ones better; nothing else is to be said of them.
+    for file in good_files().iter().filter(|file| !file.contains("testdata")) {
+        let found = json(&["fit", file]);
+        let rms = found["rms_ln"].as_f64().expect("a number");
+        let expected: &[&str] = if rms >= 0.3 { &["model"] } else { &[] };
+        assert_eq!(hints(&found), expected, "{file}: {}", found["hints"]);
     }
     for name in [
         "f02_phi_out_ignored.csv",

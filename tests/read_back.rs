@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
+use brdfit::engine::Material;
 use brdfit::export::model::Model;
 use brdfit::export::{bird, zemax};
 use brdfit::input::{self, ReadOptions};
-use brdfit::output::{json, shortest, write_row};
+use brdfit::number::shortest;
+use brdfit::output::{json, write_row};
 use brdfit::page::results;
 use brdfit::plain::{of_cell, plain};
 use brdfit_core::brdf::Params;
@@ -89,10 +91,10 @@ proptest! {
         });
         let found = results::parse(json(&object).as_bytes()).unwrap().remove(0);
         prop_assert_eq!((found.file, found.scan), (PathBuf::from(&file), scan));
-        let bits = |params: &Params<f64>| params.to_array().map(f64::to_bits);
-        prop_assert_eq!(bits(&found.params.unwrap()), bits(&params));
+        let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(&found.material.unwrap().values), bits(&values));
         let exported = Model::of_json(object.to_string().as_bytes(), None).unwrap();
-        prop_assert_eq!(bits(&exported.params), bits(&params));
+        prop_assert_eq!(bits(&exported.material.values), bits(&values));
     }
 }
 
@@ -101,8 +103,8 @@ proptest! {
 
     #[test]
     fn exports_are_files_that_are_read(name in name(), m in 0.01..1.0f64, rho_d in 0.01..1.0f64) {
-        let params = Params::from_array([rho_d, 1.0, 0.0, m, 1.5, 0.0]);
-        let model = Model { name: name.clone(), origin: plain(&name).into_owned(), ..Model::of_params(params) };
+        let material = Material::paper([rho_d, 1.0, 0.0, m, 1.5, 0.0]);
+        let model = Model { name: name.clone(), origin: plain(&name).into_owned(), ..Model::of_params(material) };
         let options = ReadOptions { drop_invalid: true, ..ReadOptions::default() };
         for text in [zemax::write(&model), bird::write(&model)] {
             let scans = input::parse("export", text.as_bytes(), &options).unwrap();

@@ -19,7 +19,7 @@
 //! | `commands` | one file or folder a command |
 //! | [`cli`] | the command line, which strings the commands together |
 //!
-//! Every failure is an [`error::Error`].
+//! Every failure is an [`error::Error`]; [`guide`] has one page a task.
 
 pub use brdfit_engine as engine;
 
@@ -28,6 +28,7 @@ pub mod cli;
 mod commands;
 pub mod error;
 pub mod export;
+pub mod guide;
 pub mod input;
 pub mod interrupt;
 pub mod names;

@@ -26,7 +26,7 @@ pub struct Model {
     pub(crate) sets: &'static [Compiled],
 }
 
-// By its name, as addresses of code differ from run to run, and a batch compares what was asked for.
+/// The name, which is the same in every process, as the addresses of the computations are not.
 impl std::fmt::Debug for Model {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)

@@ -100,25 +100,33 @@ pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome
     hints
 }
 
-/// Are the values a reflectance factor, or not calibrated? rho_d is on 1 and more light comes back than went in.
+/// Are the values a reflectance factor, or not calibrated? More light comes back than went in, and not only by a lobe: rho_d is on its bound, or near 1 and the excess clear at all angles of incidence.
 fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Option<Hint> {
-    let brightest = derived.iter().map(|at| at.reflectance.value).fold(0.0, f64::max);
+    const BRIGHT: f64 = 0.8;
+    const CLEARLY: f64 = 1.2;
+    let reflectances = || derived.iter().map(|at| at.reflectance.value);
+    let (least, most) = (
+        reflectances().fold(f64::INFINITY, f64::min),
+        reflectances().fold(0.0, f64::max),
+    );
     let place = outcome.model.place("rho_d")?;
     let (rho_d, upper) = (outcome.params[place], options.upper[place]);
-    if !(outcome.at_bound.contains(&"rho_d") && rho_d >= upper && upper >= 1.0 && brightest > 1.0) {
+    let on_bound = outcome.at_bound.contains(&"rho_d") && rho_d >= upper && upper >= 1.0;
+    if derived.is_empty() || !(on_bound && most > 1.0 || rho_d >= BRIGHT && least > CLEARLY) {
         return None;
     }
-    let begin = format!("rho_d is on its bound of {upper} and the reflectance is {brightest:.2}");
-    let least = measurement
+    let bound = if on_bound { "rho_d is on its bound and " } else { "" };
+    let begin = format!("{bound}the reflectance is {most:.2}");
+    let darkest = measurement
         .samples
         .iter()
         .map(|sample| sample.brdf)
         .fold(f64::INFINITY, f64::min);
     let is_brdf = measurement.read_as.quantity == Quantity::Brdf;
-    // Divided by pi the darkest direction must be possible.
+    // As a reflectance factor the darkest direction must be possible.
     Some(Hint::new(
         "quantity",
-        if is_brdf && least <= 1.1 {
+        if is_brdf && darkest <= 1.1 {
             format!("{begin}: are the values reflectance factors, --quantity brf?")
         } else {
             format!("{begin}: are the values calibrated, and in which unit?")
@@ -161,4 +169,36 @@ fn in_plane(group: &[&Sample<f64>]) -> Vec<(f64, f64)> {
         .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{self, robust::Robust};
+
+    #[test]
+    fn a_lobe_that_a_robust_fit_left_out_is_seen() {
+        let brdf = |theta_s: i32| {
+            if (theta_s - 30).abs() <= 3 {
+                50.0
+            } else {
+                0.1 + 0.001 * f64::from(theta_s % 7)
+            }
+        };
+        let samples: Vec<Sample<f64>> = (-80..=80)
+            .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), brdf(theta_s)))
+            .collect();
+        let mut outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
+        let mut seen = |outliers: Vec<usize>| {
+            outcome.robust = Some(Robust { scale: 0.01, outliers });
+            brightest_left_out(&samples, &outcome)
+        };
+        assert_eq!(seen((107..=113).collect()), Some((7, 30.0)));
+        // Scattered outliers, a few beside the peak, and many elsewhere are no lobe.
+        assert_eq!(seen((0..160).step_by(3).collect()), None);
+        assert_eq!(seen(vec![109, 110, 111]), None);
+        assert_eq!(seen((20..40).collect()), None);
+        outcome.robust = None;
+        assert_eq!(brightest_left_out(&samples, &outcome), None);
+    }
 }

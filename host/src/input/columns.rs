@@ -207,7 +207,19 @@ impl Finder<'_> {
                 names.join(" and ")
             ))
             .at_column(second as u64 + 1)
-            .help(format!("leave one out with --ignore, such as --ignore {}", second + 1)));
+            .help(match role {
+                Role::ThetaS => format!(
+                    "say what each is, such as --columns theta_i={},theta_s={}, or leave one out with --ignore",
+                    first + 1,
+                    second + 1
+                ),
+                Role::PhiS => format!(
+                    "say what each is, such as --columns phi_i={},phi_s={}, or leave one out with --ignore",
+                    first + 1,
+                    second + 1
+                ),
+                _ => format!("leave one out with --ignore, such as --ignore {}", second + 1),
+            }));
         }
         if let Some(first) = first {
             self.taken[first] = true;
@@ -282,7 +294,15 @@ impl Finder<'_> {
     fn missing(&self, quantity: &str) -> Error {
         let found: Vec<String> = self.heads.iter().map(|head| shown(&head.text)).collect();
         let name = quantity.trim_end_matches("_deg").trim_end_matches("_per_sr");
-        Error::new(format!("no column {quantity} among the columns {}", some_of(&found))).help(format!(
+        let foreign = self.heads.iter().find(|head| head.unit == Some(Unit::Foreign));
+        let foreign = foreign.filter(|_| name == "brdf");
+        let foreign = foreign.map_or(String::new(), |head| {
+            format!(
+                "; '{}' is not in sr^-1, so it is no BRDF before it is calibrated",
+                shown(&head.text)
+            )
+        });
+        Error::new(format!("no column {quantity} among the columns {}{foreign}", some_of(&found))).help(format!(
             "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
         ))
     }
@@ -427,6 +447,8 @@ mod tests {
             ("aoi,theta_s,brdf,std", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,brdf std [1/sr]", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,standard deviation of BRDF", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,±", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,delta_BRDF", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,ln_brdf,weight", WeightKind::Factor),
         ] {
             assert_eq!(find(header).unwrap().values[0].weight, Some((3, kind)), "{header}");
@@ -474,7 +496,13 @@ mod tests {
             "{error}"
         );
         let error = find("theta_i,theta_s,theta_r,brdf").unwrap_err();
-        assert_eq!(error.column, Some(3));
+        assert!(error.column == Some(3) && error.to_string().contains("--columns theta_i=2,theta_s=3"));
+        assert!(
+            find("theta_i,theta_s,signal (mV)")
+                .unwrap_err()
+                .to_string()
+                .contains("'signal (mV)' is not in sr^-1")
+        );
         assert!(find("theta_i_rad,theta_s_deg,brdf").is_err());
         assert!(find("theta_i,theta_s,raa,phi_s,brdf").is_err());
     }

@@ -106,7 +106,7 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
         .map(|row| degrees(row.theta_s))
         .fold(f64::NEG_INFINITY, f64::max);
     if high - low <= 180.0 {
-        return Ok(());
+        return from_the_surface(scan, low, angles().filter(|row| degrees(row.theta_s) > 90.0).count());
     }
     let beyond = |row: &&Row| degrees(row.theta_s).abs() > 90.0;
     let error = Error::new(format!(
@@ -121,6 +121,22 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
         ..error
     };
     Err(if line > 0 { error.at_line(line) } else { error })
+}
+
+/// Refuses scattering angles that begin at 0 and of which many are beyond the normal: they are counted from the surface.
+fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error> {
+    if low < 0.0 || 4 * beyond < scan.rows.len() {
+        return Ok(());
+    }
+    let error = Error::new(format!(
+        "theta_s begins at {low} degrees and {beyond} of {} rows are beyond 90: is it counted from the surface?",
+        scan.rows.len()
+    ))
+    .help("theta_s is counted from the normal, negative on the side of incidence: subtract 90 degrees if so");
+    Err(Error {
+        column: scan.places.theta_s,
+        ..error
+    })
 }
 
 /// Refuses values which, over a wide range of angles, are all brighter than any surface.

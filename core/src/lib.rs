@@ -29,6 +29,11 @@
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
 
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!(
+    "x87 registers round differently, which breaks exp and changes the bits of every fit: compile with -C target-feature=+sse2, or for a target that has it, such as i686-unknown-linux-gnu"
+);
+
 mod bend;
 mod boxqp;
 pub mod brdf;

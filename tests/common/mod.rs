@@ -4,9 +4,11 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
+pub mod claims;
 pub mod double_double;
 pub mod dual;
 pub mod hard_scenes;
+pub mod interval_oracle;
 pub mod literal;
 pub mod mgh_problems;
 pub mod missed;

@@ -13,6 +13,7 @@ mod outcome;
 mod search;
 mod values;
 
+pub mod certify;
 pub mod joint;
 pub mod models;
 pub mod robust;

@@ -63,6 +63,8 @@ pub enum FitError {
     TooFew(usize, usize),
     /// No compiled set has these terms.
     Terms(u8),
+    /// There is no proof of the optimum for the model of this name.
+    NoProof(&'static str),
     /// The fit was no longer wanted: see [`crate::Until`].
     Interrupted,
 }
@@ -94,6 +96,7 @@ impl std::fmt::Display for FitError {
             FitError::TooFew(samples, parameters) => {
                 write!(f, "{samples} samples cannot determine {parameters} parameters")
             }
+            FitError::NoProof(model) => write!(f, "there is no proof of the optimum for the model {model}"),
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
             FitError::Interrupted => f.write_str("interrupted"),
         }

@@ -175,7 +175,7 @@ fn index<R: Real, const P: usize>(
             _ => continue,
         };
         x[k] = match (region, chosen) {
-            (Region::Slopes(like), _) if i % 2 == 0 => like[k],
+            (Region::Slopes(like), _) if i.is_multiple_of(2) => like[k],
             _ if fades => fading.max(bounds.lower[k]).min(bounds.upper[k]),
             (_, Some(value)) => value.max(bounds.lower[k]).min(bounds.upper[k]),
             _ => between(parameter, bounds, k, R::ZERO, u.max(R::ZERO)),

@@ -15,15 +15,22 @@ const CLEARLY: f64 = 1.5;
 ///
 /// Where that brightness falls as theta_i grows, the sample reflects back, as a retroreflector does: a specular peak becomes brighter towards grazing.
 pub fn other_side(samples: &[Sample<f64>]) -> Option<f64> {
-    let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
-    angles.sort_by(f64::total_cmp);
-    angles.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
+    let mut sorted: Vec<&Sample<f64>> = samples.iter().collect();
+    sorted.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
+    let mut rest = sorted.as_slice();
     let mut backs: Vec<f64> = Vec::new();
     let mut least = f64::INFINITY;
-    for theta_i in angles.into_iter().filter(|angle| RANGE.contains(&angle.to_degrees())) {
+    while let Some(first) = rest.first() {
+        let theta_i = first.theta_i;
+        let (group, others) = rest.split_at(rest.partition_point(|sample| sample.theta_i - theta_i < 1e-4));
+        rest = others;
+        if !RANGE.contains(&theta_i.to_degrees()) {
+            continue;
+        }
         let near = |centre: f64| {
-            let group = samples.iter().filter(|sample| (sample.theta_i - theta_i).abs() < 1e-4);
-            let inside = group.filter(|sample| signed(sample).is_some_and(|angle| (angle - centre).abs() <= WINDOW));
+            let inside = group
+                .iter()
+                .filter(|sample| signed(sample).is_some_and(|angle| (angle - centre).abs() <= WINDOW));
             inside
                 .map(|sample| sample.brdf)
                 .fold(None, |most: Option<f64>, f| Some(most.map_or(f, |most| most.max(f))))

@@ -215,7 +215,7 @@ fn a_run_is_resumed_where_it_was_killed() {
     let ran = brdfit(&[&arguments[..], &["--resume"]].concat());
     assert_eq!(ran.code, 0);
     let said = format!(
-        "{}:4: this is no whole record; the fit that it may have been of is made again\n",
+        "{}:4: this record is not whole; its fit is made again\n",
         text(&partial)
     );
     assert_eq!(ran.errors, said);
@@ -254,7 +254,11 @@ fn a_flipped_digit_is_found_and_fitted_again() {
     );
     let again = brdfit(&[&shard[..], &["--resume"]].concat());
     assert_eq!(again.code, 0);
-    assert!(again.errors.contains(":4: this is no whole record"), "{}", again.errors);
+    assert!(
+        again.errors.contains(":4: this record is not whole"),
+        "{}",
+        again.errors
+    );
     assert_eq!(fs::read_to_string(&path).unwrap(), part);
     assert_eq!(brdfit(&["merge", "--out", text(&out)]).code, 0);
     assert_eq!(fs::read_to_string(&out).unwrap(), whole);
@@ -264,7 +268,7 @@ fn a_flipped_digit_is_found_and_fitted_again() {
     let resumed = brdfit(&["batch", text(&folder), "--out", text(&out), "--resume"]);
     assert_eq!(resumed.code, 0);
     assert!(
-        resumed.errors.contains(":4: this is no whole record"),
+        resumed.errors.contains(":4: this record is not whole"),
         "{}",
         resumed.errors
     );
@@ -366,7 +370,7 @@ fn merge_takes_nothing_missing_or_doubled() {
                 .collect(),
             "the record of file 2 is broken",
         ),
-        (lines[1..].concat(), "no part of a batch"),
+        (lines[1..].concat(), "not a part of a batch"),
     ];
     for (contents, what) in broken {
         fs::write(&second, contents).unwrap();
@@ -399,7 +403,7 @@ fn merge_takes_nothing_missing_or_doubled() {
 fn options_that_make_no_sense_are_one_line() {
     let (_root, folder, out) = scans(1);
     let folder = text(&folder);
-    fail(&["batch", folder, "--out", "results.txt"], "tells no form of results");
+    fail(&["batch", folder, "--out", "results.txt"], "does not say in which form");
     fail(&["batch", folder, "--out", "results.parquet"], "built without Parquet");
     fail(&["batch", folder, "--out", "-", "--shard", "1/2"], "needs a file");
     fail(&["batch", "no/such/*.csv", "--out", text(&out)], "no file matches");

@@ -54,7 +54,7 @@ fn each_error_of_a_file_names_its_place() {
         ("hole", format!("{HEAD}45,,0.1\n").into(), ":4:2", "'' is not a number"),
         ("nan", format!("{HEAD}45,10,NaN\n").into(), ":4:3", "--drop-invalid"),
         ("inf", format!("{HEAD}45,10,inf\n").into(), ":4:3", "--drop-invalid"),
-        ("nan_angle", format!("{HEAD}nan,10,1\n").into(), ":4:1", "no angle"),
+        ("nan_angle", format!("{HEAD}nan,10,1\n").into(), ":4:1", "not an angle"),
         ("horizon", format!("{HEAD}45,90,0.1\n").into(), ":4:2", "horizon"),
         ("below", format!("{HEAD}45,-91,0.1\n").into(), ":4:2", "horizon"),
         (
@@ -85,7 +85,7 @@ fn each_error_of_a_file_names_its_place() {
             "few",
             format!("{HEAD}45,11,0.1\n").into(),
             "",
-            "2 samples can not determine 6 parameters",
+            "2 samples cannot determine 6 parameters",
         ),
         ("binary", b"\x89PNG\r\n\x1a\n\0\0\xff\xfe".into(), "", "a PNG picture"),
         (
@@ -126,7 +126,7 @@ fn errors_of_options_are_one_line() {
         (&["--fix", "n=1.5", "--bounds", "n=1:2"], "twice"),
         (
             &["--fix", "kappa=0", "--terms", "diffuse,surface"],
-            "no parameter of the terms",
+            "not a parameter of the terms",
         ),
         (&["--terms", "volume"], "--terms takes one of: "),
         (&["--terms", "gloss"], "no term 'gloss'"),
@@ -190,7 +190,7 @@ fn completions_and_manual_know_every_command() {
         "{page}"
     );
     assert!(page.contains("drop\\-invalid"));
-    assert!(fail(&["man", "woman"]).contains("take one of fit, report, batch"));
+    assert!(fail(&["man", "woman"]).contains("take one of fit, inspect, report, batch"));
 }
 
 #[test]

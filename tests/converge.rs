@@ -118,7 +118,7 @@ fn errors_are_one_line() {
         (&["-", "--truth", "x=1"], short, "no parameter 'x'"),
         (&["-", "--truth", "m"], short, "write --truth NAME=VALUE"),
         (&["-", "--truth", "m=1,m=1"], short, "gives m twice"),
-        (&["-"], short, "can not determine 6 parameters; measure more"),
+        (&["-"], short, "cannot determine 6 parameters; measure more"),
         (&["-"], &faint, "-:31: the BRDF is not positive"),
         (&["no_such.csv"], "", "no such file"),
     ];

@@ -69,6 +69,8 @@ fn no_command_replaces_its_input() {
             fs::remove_file(&picture).unwrap();
         }
     }
+    let error = fail(&["batch", &format!("@{list}"), "--format", "csv", "--out", &list]);
+    assert!(error.contains("this is an input too"), "{error}");
     let error = fail(&["export", &results, "--to", "c", "--output", &results]);
     assert!(error.contains("this is an input too"), "{error}");
     assert_eq!(contents(folder.path()), before);

@@ -287,7 +287,7 @@ fn duplicated_angles_count_twice_as_a_weight_does() {
 #[test]
 fn normal_incidence() {
     let samples = simulated(0.0, 5, PAPER);
-    // Both lobes fall on one another: rho_s and rho_v can not be told apart, but the curve is fitted.
+    // Both lobes fall on one another: rho_s and rho_v cannot be told apart, but the curve is fitted.
     let (double, single) = both(&samples);
     println!("theta_i = 0: {double:e}, f32 {single:e}");
     check(double, tolerance::NORMAL_F64);

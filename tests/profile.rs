@@ -158,7 +158,7 @@ fn measured_thresholds_are_those_of_f_where_the_model_is_linear() {
         found[1] / threshold(0.95, outcome.uncertainty.degrees_of_freedom)
     };
     check((of("testdata1_sym_seed1.csv", 0) - 1.0).abs(), tolerance::CALIBRATED);
-    // m can not go where n and kappa would have to leave their bounds.
+    // m cannot go where n and kappa would have to leave their bounds.
     let m = of("testdata2_sym_seed1.csv", 3);
     println!("m of test data 2: {m:.3} of F's threshold");
     assert!(m < 0.9);
@@ -201,11 +201,11 @@ fn command() {
     for (arguments, message) in [
         (
             vec!["profile", file, "--parameter", "x"],
-            "'x' is no free parameter of the terms diffuse,surface,volume,absorbing; the free parameters are rho_d, rho_s",
+            "'x' is not a free parameter of the terms diffuse,surface,volume,absorbing; the free parameters are rho_d, rho_s",
         ),
         (
             vec!["profile", file, "--parameter", "n", "--fix", "n=1.5"],
-            "'n' is no free parameter",
+            "'n' is not a free parameter",
         ),
         (
             vec!["profile", file, "--parameter", "kappa", "--terms", "diffuse,surface"],

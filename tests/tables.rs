@@ -334,6 +334,14 @@ fn angles_of_a_full_turn_and_in_radians() {
     assert!(message.contains("are they degrees?"), "{message}");
     let message = fail(&["fit", &with("theta_i,theta_s,brdf", &wide), "--drop-invalid"]);
     assert!(message.contains("more than half a turn"), "{message}");
+    let mut surface = String::new();
+    for row in signed.lines() {
+        let cells: Vec<&str> = row.split(',').collect();
+        let theta_s: f64 = cells[1].parse().expect("an angle");
+        surface += &format!("{},{},{}\n", cells[0], 90.0 + theta_s, cells[2]);
+    }
+    let message = fail(&["fit", &with("theta_i,theta_s,brdf", &surface), "--drop-invalid"]);
+    assert!(message.contains("counted from the surface"), "{message}");
     let message = fail(&["fit", &case("f18_pivot_theta_phi.txt")]);
     assert!(message.contains("azimuths"), "{message}");
     let matrix = fit(&[&case("f18_pivot_theta_phi.txt"), "--theta-i", "30"]);
@@ -431,6 +439,15 @@ fn one_file_per_angle_of_incidence() {
         .concat(),
     );
     assert!(message.contains("3 angles for 2 files"), "{message}");
+    // What is of several files is not ignored where each is read alone.
+    let out = folder.path().join("out.csv");
+    let out = out.to_str().expect("a path in UTF-8");
+    let message = fail(&["batch", &first, &second, "--out", out, "--one-scan"]);
+    assert!(
+        message.contains("--one-scan is for several files together"),
+        "{message}"
+    );
+    assert!(fail(&["report", &first, "--theta-i", "20,45"]).contains("reads each alone"));
     // An option that another format has no use for is not ignored.
     let other = write(&folder, "x.astm", "VARS theta_i,theta_s,R\n\n0.1,0.2,0.3\n");
     assert!(fail(&["fit", &other, "--theta-i", "20"]).contains("--theta-i is for tables"));

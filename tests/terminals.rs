@@ -154,10 +154,10 @@ fn results_that_name_no_file_are_refused() {
     for named in ["/dev/zero", fifo.to_str().unwrap()] {
         let json = format!("{{\"file\": \"{named}\", \"scan\": null, \"parameters\": {parameters}}}");
         let results = write(&folder, "results.json", json);
-        assert!(fail(&["report", &results]).contains("this is no file"));
+        assert!(fail(&["report", &results]).contains("this is not a file"));
         let csv = format!("file,scan,rho_d,rho_s,rho_v,m,n,kappa,error\n{named},,0.1,0,0,0.1,1.5,0,\n");
         let results = write(&folder, "results.csv", csv);
-        assert!(fail(&["report", &results]).contains("this is no file"));
+        assert!(fail(&["report", &results]).contains("this is not a file"));
     }
     assert!(fail(&["fit", "/dev/zero"]).contains("this is a device"));
     fs::remove_file(fifo).unwrap();
@@ -200,4 +200,37 @@ fn weights_of_any_size_are_those_of_size_1() {
     }
     let far = program::brdfit(&["stability", &scan, "--weight-angle", "30=1e300"], b"");
     assert_eq!(far.code, 0, "{}", far.errors);
+}
+
+#[test]
+fn numbers_in_messages_are_short() {
+    let folder = tempfile::tempdir().unwrap();
+    for row in [
+        "45,1e300,1",
+        "1e300,1,1",
+        "45,1,-1e300",
+        "45,1,1e-320",
+        "-1e300,1,1",
+        "45,1,1e309",
+    ] {
+        for head in ["theta_i,theta_s,brdf", "theta_i_rad,theta_s_rad,ln_brdf"] {
+            let scan = write(&folder, "scan.csv", format!("{head}\n{row}\n45,2,1\n45,3,1\n"));
+            for drop in [&[][..], &["--drop-invalid"]] {
+                let ran = program::brdfit(&[&["fit", &scan], drop].concat(), b"");
+                let longest = ran
+                    .errors
+                    .split(|c: char| !(c.is_ascii_digit() || ".e+-".contains(c)))
+                    .map(str::len)
+                    .max();
+                assert!(longest <= Some(24), "{head} {row}: {}", ran.errors);
+            }
+        }
+    }
+    for arguments in [
+        &["simulate", "--theta-i", "1e300", "--theta-s", "1", "--rho-d", "0.1"][..],
+        &["fit", "x", "--fix", "n=1e300"],
+    ] {
+        let errors = fail(arguments);
+        assert!(errors.len() < 300 && !errors.contains("0000000000"), "{errors}");
+    }
 }

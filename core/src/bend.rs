@@ -13,13 +13,13 @@ pub(crate) fn peak<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>], tan2:
         let (Some(tan2), Some(cos)) = (block.columns.get(tan2), block.columns.get(cos)) else {
             continue;
         };
-        for (lane, weight) in block.weight.iter().enumerate() {
-            let mut tan2 = tan2[lane];
-            if !(*weight > R::ZERO) {
+        for (&weight, (&tan2, &cos)) in block.weight.iter().zip(tan2.iter().zip(cos)) {
+            let mut tan2 = tan2;
+            if !(weight > R::ZERO) {
                 continue;
             }
             if tan2 < nearest[0] {
-                cos_theta_d = cos[lane];
+                cos_theta_d = cos;
             }
             for place in &mut nearest {
                 if tan2 < *place {
@@ -81,12 +81,12 @@ pub(crate) fn bend<R: Real, const P: usize>(
             *value += more;
         }
     }
-    let from = Index::new(old_n, old_kappa2).reflect::<2, true>(peaks);
+    let from = Index::new(old_n, old_kappa2).reflect(peaks, true);
     let (new_n, new_kappa2) = (
         at(&bent, n, R::ONE).max(R::ONE),
         at(&bent, kappa2, R::ZERO).max(R::ZERO),
     );
-    let there = Index::new(new_n, new_kappa2).reflect::<2, false>(peaks);
+    let there = Index::new(new_n, new_kappa2).reflect(peaks, false);
     let d_n2 = R::of(2.0) * old_n * d_n;
     for (place, lobe) in weights {
         // So the compiler sees that no index is out of range.

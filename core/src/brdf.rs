@@ -1,11 +1,13 @@
 //! Microfacet models as ln f with its gradient: the modified Cook-Torrance BRDF of Eq. 14, and what else Eq. 5 gives from other pieces.
 
+mod row;
+
 use core::marker::PhantomData;
 
 use crate::fresnel::{Fresnel, Index};
 use crate::geometry::{Block, Geometry};
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
-use crate::model::{Rows, WEIGHTS};
+use crate::model::{Rows, WEIGHTS, Want};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -116,11 +118,15 @@ impl<R: Real> Params<R> {
 
 /// The lobes that a model can have: surface, volume, second surface lobe.
 const LOBES: usize = 3;
-/// Which pair of facet angles each has: that of the surface lobe, or that of the volume lobe.
-pub(crate) const PAIR: [usize; LOBES] = [0, 1, 0];
 /// Places of the weight of each, and of its slope where it has one of its own.
 pub(crate) const WEIGHT: [usize; LOBES] = [1, 2, RHO_2];
 const SLOPE: [usize; LOBES] = [3, M_V, M_2];
+
+/// Which pair of facet angles a lobe has: that of the surface lobe, or that of the volume lobe.
+#[inline(always)]
+pub(crate) const fn pair(lobe: usize) -> usize {
+    lobe % 2
+}
 
 /// Number of lobes of `terms`.
 #[inline(always)]
@@ -131,10 +137,10 @@ pub(crate) const fn lobes(terms: u8) -> usize {
 /// Which lobe is in place `place` of those of `terms`.
 #[inline(always)]
 const fn lobe(terms: u8, place: usize) -> usize {
-    match (terms & SURFACE != 0, terms & VOLUME != 0, place) {
-        (true, _, 0) => 0,
-        (true, true, 1) | (false, ..) => 1,
-        _ => 2,
+    match (terms & SURFACE != 0, terms & VOLUME != 0) {
+        (true, true) => place,
+        (true, false) => 2 * place,
+        (false, _) => place + 1,
     }
 }
 
@@ -194,27 +200,18 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         )
     }
 
-    fn single<const GRADIENT: bool>(&self, geometry: &Geometry<R>) -> Rows<R, 1, 6> {
-        let block = Block::of((*geometry).into());
-        let mut rows = Rows {
-            ln_f: Pack::splat(R::ZERO),
-            gradient: [Pack::splat(R::ZERO); 6],
-        };
-        self.write_row::<GRADIENT, 6, 6>(&block, &mut rows, |index| index);
-        rows
-    }
-
     /// ln f, f in sr^-1; where f vanishes (all weights 0), ln of the smallest sum that counts.
     pub fn ln_f(&self, geometry: &Geometry<R>) -> R {
-        self.single::<false>(geometry).ln_f.0[0]
+        self.row(&Block::of((*geometry).into()), 0, Want::Value, &mut [R::ZERO; 0])
     }
 
     /// ln f, and its derivatives by rho_d, rho_s, rho_v, m, n and kappa (0 for absent terms).
     pub fn gradient(&self, geometry: &Geometry<R>) -> (R, [R; 6]) {
-        let rows = self.single::<true>(geometry);
-        let mut gradient = rows.gradient.map(|column| column.0[0]);
+        let mut row = [R::ZERO; NAMES.len()];
+        let ln_f = self.row(&Block::of((*geometry).into()), 0, Want::Gradient, &mut row);
+        let mut gradient = core::array::from_fn(|index| get(TERMS, &row, index, R::ZERO));
         gradient[5] *= R::of(2.0) * self.index.kappa;
-        (rows.ln_f.0[0], gradient)
+        (ln_f, gradient)
     }
 }
 
@@ -283,40 +280,47 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         let mut lift = [R::ONE; L];
         if D::UNDERFLOWS && self.faint {
             for lane in 0..L {
-                let mut brightest = self.ln_rho_d;
-                for place in 0..lobes(TERMS) {
-                    let lobe = lobe(TERMS, place);
-                    let exponent = -block.columns[PAIR[lobe]][lane] * self.inverse_m2[lobe];
-                    brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
-                }
-                shift[lane] = brightest;
-                lift[lane] = (-brightest).min(self.lift_limit).exp();
+                (shift[lane], lift[lane]) = self.lift_lane(block, lane);
             }
         }
         Lift { shift, lift }
     }
 
-    /// A column of the pair of facet angles of each lobe: lobe by lobe, the `G` lanes of [`Pack::gather`].
+    /// The same of one lane, if no diffuse term keeps its lobes from underflow.
+    #[inline(always)]
+    fn lift_lane<const L: usize, const C: usize>(&self, block: &Block<R, L, C>, lane: usize) -> (R, R) {
+        let mut brightest = self.ln_rho_d;
+        for place in 0..lobes(TERMS) {
+            let lobe = lobe(TERMS, place);
+            let exponent = -block.columns[pair(lobe)][lane] * self.inverse_m2[lobe];
+            brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
+        }
+        (brightest, (-brightest).min(self.lift_limit).exp())
+    }
+
+    /// A column of the pair of facet angles of each lobe from place `from` on: lobe by lobe, the `G` lanes of [`Pack::gather`].
     #[inline(always)]
     fn facets<const K: usize, const G: usize, const L: usize, const C: usize>(
         block: &Block<R, L, C>,
+        from: usize,
         first: usize,
         lane: usize,
     ) -> Pack<R, K> {
-        Pack::from_fn(|k| block.columns[first + PAIR[lobe(TERMS, k / G)]][lane + k % G * (L / G)])
+        Pack::from_fn(|k| block.columns[first + pair(lobe(TERMS, from + k / G))][lane + k % G * (L / G)])
     }
 
-    /// A number of each lobe, for each of its lanes.
+    /// A number of each lobe from place `from` on, for each of its lanes.
     #[inline(always)]
-    fn of_lobes<const K: usize, const G: usize>(numbers: &[R; LOBES]) -> Pack<R, K> {
-        Pack::from_fn(|k| numbers[lobe(TERMS, k / G)])
+    fn of_lobes<const K: usize, const G: usize>(numbers: &[R; LOBES], from: usize) -> Pack<R, K> {
+        Pack::from_fn(|k| numbers[lobe(TERMS, from + k / G)])
     }
 
-    /// f of each lobe and lane at rho F = 1, times exp(-shift).
+    /// f of each lobe from place `from` on and of each lane at rho F = 1, times exp(-shift).
     #[inline(always)]
     fn beams<const K: usize, const G: usize, const L: usize, const C: usize>(
         &self,
         block: &Block<R, L, C>,
+        from: usize,
         shift: Pack<R, G>,
         lane: usize,
     ) -> Beams<R, K>
@@ -324,9 +328,9 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         M: Masking<D, C>,
     {
         let shift = Pack::<R, K>::from_fn(|k| shift.0[k % G]);
-        let inverse_m2 = Self::of_lobes::<K, G>(&self.inverse_m2);
-        let t = Self::facets::<K, G, L, C>(block, 0, lane) * inverse_m2;
-        let f = Self::facets::<K, G, L, C>(block, 4, lane) * inverse_m2 * D::shape(t, shift, self.q);
+        let inverse_m2 = Self::of_lobes::<K, G>(&self.inverse_m2, from);
+        let t = Self::facets::<K, G, L, C>(block, from, 0, lane) * inverse_m2;
+        let f = Self::facets::<K, G, L, C>(block, from, 4, lane) * inverse_m2 * D::shape(t, shift, self.q);
         let mut beams = Beams {
             f,
             t,
@@ -335,8 +339,8 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         if M::SLOPED {
             // The volume lobe has no masking: there, facets of slope 0.
             let m2 = Pack::<R, K>::from_fn(|k| {
-                let lobe = lobe(TERMS, k / G);
-                if PAIR[lobe] == 0 {
+                let lobe = lobe(TERMS, from + k / G);
+                if pair(lobe) == 0 {
                     R::ONE / self.inverse_m2[lobe]
                 } else {
                     R::ZERO
@@ -351,22 +355,17 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         beams
     }
 
-    /// F of each lobe and lane; `KP` is `G` times the number of pairs of facet angles.
+    /// F of each lobe from place `from` on and of each lane; `KP` is `G` times the number of pairs of facet angles.
     #[inline(always)]
-    fn reflect<
-        const K: usize,
-        const KP: usize,
-        const G: usize,
-        const L: usize,
-        const C: usize,
-        const GRADIENT: bool,
-    >(
+    fn reflect<const K: usize, const KP: usize, const G: usize, const L: usize, const C: usize>(
         &self,
         block: &Block<R, L, C>,
+        from: usize,
         lane: usize,
+        gradient: bool,
     ) -> Fresnel<R, K> {
-        let cos_theta_d = Self::facets::<KP, G, L, C>(block, 2, lane);
-        let fresnel = self.index.reflect::<KP, GRADIENT>(cos_theta_d);
+        let cos_theta_d = Self::facets::<KP, G, L, C>(block, from, 2, lane);
+        let fresnel = self.index.reflect(cos_theta_d, gradient);
         // The second surface lobe has the angles of the first.
         let spread = |pack: Pack<R, KP>| Pack::<R, K>::from_fn(|k| pack.0[if k < KP { k } else { k % G }]);
         Fresnel {
@@ -376,10 +375,10 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         }
     }
 
-    /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives, each in the place that `place` gives it; `K` is `G` times the number of lobes.
+    /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives; `K` is `G` times the number of lobes.
     ///
     /// With t = tan^2 theta_h / m^2, f = rho_d/pi + sum over lobes of rho F factor g(t) / m^2.
-    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is no number of this type.
+    /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is outside the range of this type.
     #[inline(always)]
     pub(crate) fn write<
         const K: usize,
@@ -395,15 +394,14 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         lift: &Lift<R, L>,
         lane: usize,
         rows: &mut Rows<R, G, P>,
-        place: impl Fn(usize) -> usize,
     ) where
         M: Masking<D, C>,
     {
         let shift = Pack::<R, G>::gather(&lift.shift, lane);
         let lift = Pack::<R, G>::gather(&lift.lift, lane);
-        let rho = Self::of_lobes::<K, G>(&self.rho);
-        let beams = self.beams::<K, G, L, C>(block, shift, lane);
-        let fresnel = self.reflect::<K, KP, G, L, C, GRADIENT>(block, lane);
+        let rho = Self::of_lobes::<K, G>(&self.rho, 0);
+        let beams = self.beams::<K, G, L, C>(block, 0, shift, lane);
+        let fresnel = self.reflect::<K, KP, G, L, C>(block, 0, lane, GRADIENT);
         let d_rho = beams.f * fresnel.f;
         let term = rho * d_rho;
         let f = sum_lobes(lift * self.rho_d_pi, term).map(|f| f.max(R::TINY));
@@ -416,7 +414,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         let weighted = rho * beams.f;
         let mut set = |index: usize, value: Pack<R, G>| {
             if has(TERMS, index)
-                && let Some(row) = rows.gradient.get_mut(place(index))
+                && let Some(row) = rows.gradient.get_mut(slot(TERMS, index))
             {
                 *row = value;
             }
@@ -450,26 +448,6 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         }
     }
 
-    /// [`Brdf::write`] of a block of one lane.
-    #[inline(always)]
-    pub(crate) fn write_row<const GRADIENT: bool, const P: usize, const C: usize>(
-        &self,
-        block: &Block<R, 1, C>,
-        rows: &mut Rows<R, 1, P>,
-        place: impl Fn(usize) -> usize,
-    ) where
-        M: Masking<D, C>,
-    {
-        let lift = self.lift(block);
-        match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => self.write::<0, 0, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
-            (1, _) => self.write::<1, 1, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
-            (2, false) => self.write::<2, 2, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
-            (2, true) => self.write::<2, 1, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
-            _ => self.write::<3, 2, 1, 1, C, GRADIENT, P>(block, &lift, 0, rows, place),
-        }
-    }
-
     /// f of each weight at 1 and the others at 0; lanes, `K` and `KP` as in `write`.
     #[inline(always)]
     pub(crate) fn columns<const K: usize, const KP: usize, const G: usize, const L: usize, const C: usize>(
@@ -480,8 +458,8 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
     where
         M: Masking<D, C>,
     {
-        let beams = self.beams::<K, G, L, C>(block, Pack::splat(R::ZERO), lane);
-        let lobes = beams.f * self.reflect::<K, KP, G, L, C, false>(block, lane).f;
+        let beams = self.beams::<K, G, L, C>(block, 0, Pack::splat(R::ZERO), lane);
+        let lobes = beams.f * self.reflect::<K, KP, G, L, C>(block, 0, lane, false).f;
         let mut columns = [Pack::splat(R::ONE / R::PI); WEIGHTS];
         let diffuse = (TERMS & DIFFUSE != 0) as usize;
         for place in 0..K / G {
@@ -526,7 +504,7 @@ fn sum_some<R: Real, const K: usize, const G: usize>(x: Pack<R, K>, counts: impl
 
 /// F, dF/dn and dF/dkappa of unpolarised light; `0 < cos_theta <= 1`, `n >= 1`, `kappa >= 0`, result 0 to 1.
 pub fn fresnel<R: Real>(cos_theta: R, n: R, kappa: R) -> (R, R, R) {
-    let fresnel = Index::new(n, kappa * kappa).reflect::<1, true>(Pack([cos_theta]));
+    let fresnel = Index::new(n, kappa * kappa).reflect(Pack([cos_theta]), true);
     let two = R::of(2.0);
     (
         fresnel.f.0[0],

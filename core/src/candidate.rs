@@ -1,9 +1,8 @@
-//! Good starts for a scan: what is no weight spread evenly, and the weights that fit best there.
+//! Good starts for a scan: parameters that are not weights spread evenly, and the weights that fit best there.
 
 use crate::boxqp;
-use crate::geometry::{Block, LANES};
-use crate::lm::Bounds;
-use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, weights};
+use crate::lm::{Bounds, Linearization};
+use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, Want, weights};
 use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 use crate::residuals::{Residuals, accumulate, total};
@@ -11,7 +10,7 @@ use crate::search::{Candidate, Scene};
 use crate::start;
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for Residuals<'_, R, M, P, C> {
-    /// Candidate `i`: what is no weight spread over the ranges that the model gives, then the weights that fit best.
+    /// Candidate `i`: parameters that are not weights spread over the ranges that the model gives, then the weights that fit best.
     fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, like: Option<&[R; P]>) -> Candidate<R, P> {
         self.inlined_candidate(bounds, seed, i, like)
     }
@@ -19,7 +18,9 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     /// Places of the weights.
-    const WEIGHTS: [Option<usize>; WEIGHTS] = weights(&M::PARAMETERS);
+    pub(crate) const WEIGHTS: [Option<usize>; WEIGHTS] = weights(&M::PARAMETERS);
+    /// Beyond the place of the last of them.
+    pub(crate) const WEIGHTS_END: usize = end(&Self::WEIGHTS);
     /// Has the model an index of refraction? Then minima beside each other differ in it alone.
     const HAS_INDEX: bool = has_index(&M::PARAMETERS);
 
@@ -63,6 +64,24 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn set_weights<const SCALAR: bool>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) -> R {
+        let sums = if SCALAR {
+            self.scalar_sums(x, Want::Columns)
+        } else {
+            self.weight_sums(x)
+        };
+        let is_weight = M::PARAMETERS.map(|parameter| parameter.is_weight());
+        let (best, rank) = box_least_squares(&sums, is_weight, bounds);
+        for k in 0..P {
+            if is_weight[k] {
+                x[k] = best[k];
+            }
+        }
+        rank
+    }
+
+    /// The normal equations of the weights: of f / f_measured of each weight at 1, times the block's weights, and of 1, times these.
+    #[inline(always)]
+    fn weight_sums(&self, x: &[R; P]) -> Linearization<R, P> {
         let pass = M::pass(x);
         let mut normal = [[[R::ZERO; SUMS]; WEIGHTS]; WEIGHTS];
         let mut gradient = [[R::ZERO; SUMS]; WEIGHTS];
@@ -70,7 +89,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             let mut columns = [[[R::ZERO; SUMS]; GROUP]; WEIGHTS];
             let mut weight = [[R::ZERO; SUMS]; GROUP];
             for lane in 0..SUMS {
-                let model = Self::relative_columns::<SCALAR>(&pass, block, lane);
+                let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
+                let model = M::columns(&pass, block, lane).map(|column| column * unit);
                 for half in 0..GROUP {
                     weight[half][lane] = block.weight[lane + half * SUMS];
                     for w in 0..WEIGHTS {
@@ -87,45 +107,30 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
                 }
             }
         }
-        let sums = core::array::from_fn(|i| core::array::from_fn(|j| total(&normal[i.max(j)][i.min(j)])));
-        let within = |side: &[R; P]| Self::WEIGHTS.map(|k| k.and_then(|k| side.get(k).copied()).unwrap_or(R::ZERO));
-        let (best, rank) = box_least_squares(
-            &sums,
-            &core::array::from_fn(|w| total(&gradient[w])),
-            Self::WEIGHTS.map(|k| k.is_some()),
-            within(&bounds.lower),
-            within(&bounds.upper),
-        );
-        for (k, value) in Self::WEIGHTS.into_iter().zip(best) {
-            if let Some(weight) = k.and_then(|k| x.get_mut(k)) {
-                *weight = value;
-            }
-        }
-        rank
-    }
-
-    /// f / f_measured of each weight at 1, times the block's weights.
-    #[inline(always)]
-    fn relative_columns<const SCALAR: bool>(
-        pass: &M::Pass,
-        block: &Block<R, LANES, C>,
-        lane: usize,
-    ) -> [Pack<R, GROUP>; WEIGHTS] {
-        let columns = if SCALAR {
-            let mut columns = [Pack::splat(R::ZERO); WEIGHTS];
-            for k in 0..GROUP {
-                let one = M::column(pass, &block.lane(lane + k * SUMS));
-                for (column, value) in columns.iter_mut().zip(one) {
-                    column.0[k] = value.0[0];
+        let mut sums = Linearization::zero();
+        for (w, i) in Self::WEIGHTS.into_iter().enumerate() {
+            let Some(i) = i.filter(|&i| i < P) else { continue };
+            sums.gradient[i] = total(&gradient[w]);
+            for (v, j) in Self::WEIGHTS.into_iter().enumerate() {
+                if let Some(j) = j.filter(|&j| j < P) {
+                    sums.hessian[i][j] = total(&normal[w.max(v)][w.min(v)]);
                 }
             }
-            columns
-        } else {
-            M::columns(pass, block, lane)
-        };
-        let unit = Pack::gather(&block.weight, lane) * Pack::gather(&block.ln_f, lane).map(|x| -x).exp();
-        columns.map(|column| column * unit)
+        }
+        sums
     }
+}
+
+const fn end(places: &[Option<usize>; WEIGHTS]) -> usize {
+    let mut end = 0;
+    let mut w = 0;
+    while w < WEIGHTS {
+        if let Some(place) = places[w] {
+            end = place + 1;
+        }
+        w += 1;
+    }
+    end
 }
 
 const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
@@ -139,7 +144,7 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
     false
 }
 
-/// Sets what is no weight to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
+/// Sets the parameters that are not weights to point `i` of a sequence that fills the ranges of the parameters evenly; `finest` is the least slope that the scan sees.
 fn spread<R: Real, const P: usize>(
     x: &mut [R; P],
     parameters: &[Parameter; P],
@@ -152,7 +157,8 @@ fn spread<R: Real, const P: usize>(
     let even = start::even::<R>(seed, i);
     let mut spread = 0;
     let mut random = None;
-    for (k, parameter) in parameters.iter().enumerate() {
+    for k in 0..P {
+        let parameter = &parameters[k];
         if parameter.is_weight() {
             continue;
         }
@@ -200,39 +206,37 @@ fn near<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], li
     }
 }
 
-/// The weights within bounds that solve `normal weights = rhs` best, and their sum of squares, less what it is at the lower bounds; a weight that is not present is 0.
-pub(crate) fn box_least_squares<R: Real, const N: usize>(
-    normal: &[[R; N]; N],
-    rhs: &[R; N],
-    present: [bool; N],
-    lower: [R; N],
-    upper: [R; N],
-) -> ([R; N], R) {
-    let mut a = [[R::ZERO; N]; N];
-    let mut g = [R::ZERO; N];
-    let mut room = [R::ZERO; N];
-    for i in 0..N {
+/// The weights within bounds that solve `hessian weights = gradient` best, and their sum of squares, less what it is at the lower bounds; what is no weight is 0.
+fn box_least_squares<R: Real, const P: usize>(
+    sums: &Linearization<R, P>,
+    is_weight: [bool; P],
+    bounds: &Bounds<R, P>,
+) -> ([R; P], R) {
+    let mut a = [[R::ZERO; P]; P];
+    let mut g = [R::ZERO; P];
+    let mut lower = [R::ZERO; P];
+    let mut room = [R::ZERO; P];
+    for i in 0..P {
         a[i][i] = R::ONE;
-        if present[i] {
-            room[i] = upper[i] - lower[i];
-            for j in 0..N {
-                a[i][j] = if present[j] { normal[i][j] } else { R::ZERO };
-            }
+        if is_weight[i] {
+            lower[i] = bounds.lower[i];
+            room[i] = bounds.upper[i] - bounds.lower[i];
+            a[i] = sums.hessian[i];
             a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
-            g[i] = -rhs[i];
+            g[i] = -sums.gradient[i];
         }
     }
     // The box is seen from its lower corner.
-    for i in 0..N {
-        for j in 0..N {
+    for i in 0..P {
+        for j in 0..P {
             g[i] += a[i][j] * lower[j];
         }
     }
-    let step = boxqp::minimize(&a, &g, &[R::ZERO; N], &room);
+    let step = boxqp::minimize(&a, &g, &[R::ZERO; P], &room);
     let mut rank = R::ZERO;
-    for i in 0..N {
+    for i in 0..P {
         rank += step[i] * (g[i] + g[i]);
-        for j in 0..N {
+        for j in 0..P {
             rank += step[i] * a[i][j] * step[j];
         }
     }
@@ -240,7 +244,7 @@ pub(crate) fn box_least_squares<R: Real, const N: usize>(
 }
 
 /// Between two positive numbers, evenly in the logarithm.
-pub(crate) fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
+fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
     if !(lower < upper) {
         return lower;
     }

@@ -49,7 +49,7 @@ use core::marker::PhantomData;
 use crate::bend::peak;
 use crate::dual::{Dual, Number};
 use crate::geometry::{Block, Geometry, LANES, SampleError};
-use crate::model::{GROUP, Model, Parameter, Rows, SUMS, Seen, WEIGHTS, weights};
+use crate::model::{GROUP, Model, Parameter, Rows, SUMS, Seen, WEIGHTS, Want, weights};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -163,17 +163,6 @@ pub fn worst_slope<R: Real, F: Formula<P>, const P: usize>(x: &[R; P], at: &Dire
 #[derive(Clone, Copy, Debug)]
 pub struct Own<F>(PhantomData<F>);
 
-/// ln f and its derivatives by the parameters.
-fn row<R: Real, F: Formula<P>, const P: usize>(x: &[R; P], at: [R; COLUMNS], gradient: bool) -> (R, [R; P]) {
-    let at = Directions::from_columns(at);
-    if !gradient {
-        return (F::brdf(x, &at).max(R::TINY).ln(), [R::ZERO; P]);
-    }
-    let (f, slopes) = F::gradient(x, &at);
-    let f = f.max(R::TINY);
-    (f.ln(), slopes.map(|slope| slope / f))
-}
-
 fn lane_of<R: Real, const L: usize>(block: &Block<R, L, COLUMNS>, lane: usize) -> [R; COLUMNS] {
     core::array::from_fn(|column| block.columns[column][lane % L])
 }
@@ -203,38 +192,55 @@ impl<R: Real, F: Formula<P>, const P: usize> Model<R, P, COLUMNS> for Own<F> {
             ln_f: Pack::splat(R::ZERO),
             gradient: [Pack::splat(R::ZERO); P],
         };
+        let want = if GRADIENT { Want::Gradient } else { Want::Value };
         for k in 0..GROUP {
             let lane = (lane + k * SUMS) % LANES;
-            let (ln_f, slopes) = row::<R, F, P>(pass, lane_of(block, lane), GRADIENT);
-            rows.ln_f.0[k] = ln_f;
-            for (column, slope) in rows.gradient.iter_mut().zip(slopes) {
-                column.0[k] = slope * block.weight[lane];
+            let mut gradient = [R::ZERO; P];
+            rows.ln_f.0[k] = Self::row(pass, block, lane, want, &mut gradient);
+            for (column, slope) in rows.gradient.iter_mut().zip(gradient) {
+                column.0[k] = slope;
             }
         }
         rows
     }
 
-    fn row<const GRADIENT: bool>(pass: &[R; P], block: &Block<R, 1, COLUMNS>) -> Rows<R, 1, P> {
-        let (ln_f, slopes) = row::<R, F, P>(pass, lane_of(block, 0), GRADIENT);
-        Rows {
-            ln_f: Pack([ln_f]),
-            gradient: slopes.map(|slope| Pack([slope * block.weight[0]])),
+    fn row<const L: usize>(
+        pass: &[R; P],
+        block: &Block<R, L, COLUMNS>,
+        lane: usize,
+        want: Want,
+        row: &mut [R; P],
+    ) -> R {
+        let at = Directions::from_columns(lane_of(block, lane));
+        if want == Want::Value {
+            return F::brdf(pass, &at).max(R::TINY).ln();
         }
+        let (f, slopes) = F::gradient(pass, &at);
+        let f = f.max(R::TINY);
+        *row = match want {
+            // As f is linear in the weights, its derivatives by these.
+            Want::Columns => core::array::from_fn(|k| {
+                if F::PARAMETERS[k].is_weight() {
+                    slopes[k]
+                } else {
+                    R::ZERO
+                }
+            }),
+            _ => slopes.map(|slope| slope / f * block.weight[lane % L]),
+        };
+        f.ln()
     }
 
     fn columns(pass: &[R; P], block: &Block<R, LANES, COLUMNS>, lane: usize) -> [Pack<R, GROUP>; WEIGHTS] {
         let mut columns = [Pack::splat(R::ZERO); WEIGHTS];
         for k in 0..GROUP {
-            let each = shares::<R, F, P>(pass, lane_of(block, lane + k * SUMS));
-            for (column, value) in columns.iter_mut().zip(each) {
-                column.0[k] = value;
+            let mut row = [R::ZERO; P];
+            let _ = Self::row(pass, block, lane + k * SUMS, Want::Columns, &mut row);
+            for (column, place) in columns.iter_mut().zip(weights(&F::PARAMETERS)) {
+                column.0[k] = place.and_then(|place| row.get(place).copied()).unwrap_or(R::ZERO);
             }
         }
         columns
-    }
-
-    fn column(pass: &[R; P], block: &Block<R, 1, COLUMNS>) -> [Pack<R, 1>; WEIGHTS] {
-        shares::<R, F, P>(pass, lane_of(block, 0)).map(|value| Pack([value]))
     }
 
     fn seen(blocks: &[Block<R, LANES, COLUMNS>]) -> Seen<R> {
@@ -244,10 +250,4 @@ impl<R: Real, F: Formula<P>, const P: usize> Model<R, P, COLUMNS> for Own<F> {
             peaks: Pack::splat(cos_theta_d),
         }
     }
-}
-
-/// f of each weight at 1: as f is linear in them, its derivatives.
-fn shares<R: Real, F: Formula<P>, const P: usize>(x: &[R; P], at: [R; COLUMNS]) -> [R; WEIGHTS] {
-    let slopes = F::gradient(x, &Directions::from_columns(at)).1;
-    weights(&F::PARAMETERS).map(|place| place.and_then(|k| slopes.get(k).copied()).unwrap_or(R::ZERO))
 }

@@ -50,15 +50,15 @@ impl<R: Real> Index<R> {
         self.contrast == R::ZERO
     }
 
-    /// F at c = cos theta_d, `0 < c <= 1`, result 0 to 1, and if `GRADIENT` its derivatives.
+    /// F at c = cos theta_d, `0 < c <= 1`, result 0 to 1, and if `gradient` its derivatives.
     ///
     /// r_s = (c - p)/(c + p) and r_p = r_s t with t = (p c - s^2)/(p c + s^2), where p = sqrt(eps - s^2) = a - i b; F = |r_s|^2 (1 + |t|^2)/2.
     /// Multiplied out, r_s = (1 - eps)/(c + p)^2 and t = (p^2 c^2 - s^4)/(p c + s^2)^2: so |r_s| keeps its relative accuracy when eps -> 1, and F = |eps - 1|^2 (v^2 + |p^2 c^2 - s^4|^2) / (2 u^2 v^2) with u = |c + p|^2 and v = |p c + s^2|^2.
     /// With h = N/p = dp/dN of the complex index N = n - i kappa, conj(r_s) dr_s/dp = 2 c conj(eps - 1) / u^2, and likewise for t.
     #[inline(always)]
-    pub fn reflect<const K: usize, const GRADIENT: bool>(&self, c: Pack<R, K>) -> Fresnel<R, K> {
+    pub fn reflect<const K: usize>(&self, c: Pack<R, K>, gradient: bool) -> Fresnel<R, K> {
         if !ALONE {
-            return self.reflect_pack::<K, GRADIENT>(c);
+            return self.reflect_pack(c, gradient);
         }
         let mut all = Fresnel {
             f: c,
@@ -66,7 +66,7 @@ impl<R: Real> Index<R> {
             d_kappa2: c,
         };
         for k in 0..K {
-            let one = self.reflect_one(c.0[k]);
+            let one = self.reflect_one(c.0[k], gradient);
             all.f.0[k] = one.f.0[0];
             all.d_n2.0[k] = one.d_n2.0[0];
             all.d_kappa2.0[k] = one.d_kappa2.0[0];
@@ -75,12 +75,13 @@ impl<R: Real> Index<R> {
     }
 
     #[inline(never)]
-    fn reflect_one(&self, c: R) -> Fresnel<R, 1> {
-        self.reflect_pack::<1, true>(Pack([c]))
+    fn reflect_one(&self, c: R, gradient: bool) -> Fresnel<R, 1> {
+        self.reflect_pack(Pack([c]), gradient)
     }
 
+    /// [`Index::reflect`], compiled into its caller.
     #[inline(always)]
-    fn reflect_pack<const K: usize, const GRADIENT: bool>(&self, c: Pack<R, K>) -> Fresnel<R, K> {
+    pub fn reflect_pack<const K: usize>(&self, c: Pack<R, K>, gradient: bool) -> Fresnel<R, K> {
         let (half, two) = (R::of(0.5), R::of(2.0));
         let c2 = c * c;
         let s2 = c2.map(|c2| R::ONE - c2);
@@ -106,7 +107,7 @@ impl<R: Real> Index<R> {
             d_n2: c,
             d_kappa2: c,
         };
-        if GRADIENT {
+        if gradient {
             // Re h / n = y / (a q) and Im h / kappa = z / (a q); what is odd in kappa is kept divided by it.
             let a2 = a * a;
             let y = a2 + self.kappa2;

@@ -34,7 +34,7 @@ impl<R: Real> Sample<R> {
     }
 }
 
-/// Why a [`Sample`] is no valid [`Observation`].
+/// Why a [`Sample`] is not a valid [`Observation`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SampleError {
@@ -258,19 +258,6 @@ impl<R: Real, const L: usize, const C: usize> Block<R, L, C> {
             self.ln_f[lane] = observation.ln_f;
             self.weight[lane] = observation.weight;
         }
-    }
-
-    /// One lane as a block of its own.
-    pub(crate) fn lane(&self, lane: usize) -> Block<R, 1, C> {
-        // So the compiler sees that no index is out of range.
-        let lane = lane % L;
-        let mut one = Block::EMPTY;
-        for (column, from) in one.columns.iter_mut().zip(&self.columns) {
-            column[0] = from[lane];
-        }
-        one.ln_f = [self.ln_f[lane]];
-        one.weight = [self.weight[lane]];
-        one
     }
 }
 

@@ -20,6 +20,7 @@
 //! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |
 //! | models of stray light | [`models::Abg`] and others | `models.rs` | |
 //! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
+//! | the same without vectors | | `scalar.rs` | |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
@@ -27,6 +28,11 @@
 //! | starts worth a fit | [`search::Scene`] | `candidate.rs` | |
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
+
+#[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
+compile_error!(
+    "x87 registers round differently, which breaks exp and changes the bits of every fit: compile with -C target-feature=+sse2, or for a target that has it, such as i686-unknown-linux-gnu"
+);
 
 mod bend;
 mod boxqp;
@@ -46,6 +52,7 @@ pub mod models;
 pub mod pack;
 pub mod real;
 pub mod residuals;
+mod scalar;
 pub mod search;
 pub mod start;
 pub mod uncertainty;

@@ -17,7 +17,7 @@ pub struct Linearization<R, const P: usize> {
 
 impl<R: Real, const P: usize> Linearization<R, P> {
     /// That of no residuals.
-    pub fn zero() -> Self {
+    pub const fn zero() -> Self {
         Linearization {
             cost: R::ZERO,
             gradient: [R::ZERO; P],

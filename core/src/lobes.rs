@@ -18,7 +18,7 @@ use crate::real::Real;
 
 /// How the slopes of the facets are distributed: `D = g(tan^2 theta_h / m^2) / (pi m^2 cos^4 theta_h)`.
 pub trait Distribution: Copy {
-    /// Is g(t) no number of its type where t is large? Then ln f is computed from its exponent.
+    /// Is g(t) outside the range of its type where t is large? Then ln f is computed from its exponent.
     const UNDERFLOWS: bool = false;
     /// Has it a further parameter q, the exponent of its tail?
     const TAIL: bool = false;

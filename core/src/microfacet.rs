@@ -3,10 +3,10 @@
 use core::marker::PhantomData;
 
 use crate::bend::{bend, peak};
-use crate::brdf::{Brdf, EVERY, Lift, PAIR, SECOND, WEIGHT, has, lobes, slot};
+use crate::brdf::{Brdf, EVERY, Lift, SECOND, WEIGHT, has, lobes, pair, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
-use crate::model::{GROUP, Model, Parameter, Role, Rows, Seen, WEIGHTS};
+use crate::model::{GROUP, Model, Parameter, Role, Rows, Seen, WEIGHTS, Want};
 use crate::pack::Pack;
 use crate::real::Real;
 
@@ -101,22 +101,23 @@ where
     ) -> Rows<R, GROUP, P> {
         const TWO: usize = 2 * GROUP;
         const THREE: usize = 3 * GROUP;
-        let mut rows = nothing();
-        let place = |index: usize| slot(TERMS, index);
+        let mut rows = Rows {
+            ln_f: Pack::splat(R::ZERO),
+            gradient: [Pack::splat(R::ZERO); P],
+        };
         match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
-            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
-            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
-            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
-            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows, place),
+            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
+            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
+            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
+            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
+            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
         }
         rows
     }
 
-    fn row<const GRADIENT: bool>(pass: &Self::Pass, block: &Block<R, 1, C>) -> Rows<R, 1, P> {
-        let mut rows = nothing();
-        pass.write_row::<GRADIENT, P, C>(block, &mut rows, |index| slot(TERMS, index));
-        rows
+    #[inline(always)]
+    fn row<const L: usize>(pass: &Self::Pass, block: &Block<R, L, C>, lane: usize, want: Want, row: &mut [R; P]) -> R {
+        pass.row(block, lane, want, row)
     }
 
     #[inline(always)]
@@ -132,16 +133,6 @@ where
         }
     }
 
-    fn column(pass: &Self::Pass, block: &Block<R, 1, C>) -> [Pack<R, 1>; WEIGHTS] {
-        match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => pass.columns::<0, 0, 1, 1, C>(block, 0),
-            (1, _) => pass.columns::<1, 1, 1, 1, C>(block, 0),
-            (2, false) => pass.columns::<2, 2, 1, 1, C>(block, 0),
-            (2, true) => pass.columns::<2, 1, 1, 1, C>(block, 0),
-            _ => pass.columns::<3, 2, 1, 1, C>(block, 0),
-        }
-    }
-
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
         let [surface, volume] = [0, 1].map(|pair| peak(blocks, pair, 2 + pair));
         Seen {
@@ -152,15 +143,7 @@ where
 
     fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        let weights = WEIGHT.map(place).into_iter().zip(PAIR);
+        let weights = WEIGHT.map(place).into_iter().zip([0, 1, 2].map(pair));
         bend(x, step, to, [place(4), place(5)], weights, seen.peaks)
-    }
-}
-
-#[inline(always)]
-fn nothing<R: Real, const G: usize, const P: usize>() -> Rows<R, G, P> {
-    Rows {
-        ln_f: Pack::splat(R::ZERO),
-        gradient: [Pack::splat(R::ZERO); P],
     }
 }

@@ -147,7 +147,7 @@ pub(crate) fn sift<R: Real, T>(list: &mut [T], cost: impl Fn(&T) -> R) {
     }
 }
 
-/// Order of costs, in which those that are no numbers come last.
+/// Order of costs, in which NaN comes last.
 fn less<R: Real>(a: R, b: R) -> bool {
     a < b || (a.is_finite() && !b.is_finite())
 }

@@ -114,6 +114,17 @@ pub struct Rows<R, const G: usize, const P: usize> {
     pub gradient: [Pack<R, G>; P],
 }
 
+/// What is wanted of one row beside ln f.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Want {
+    /// Nothing.
+    Value,
+    /// Its derivatives by the solver's coordinates, times the lane's weight.
+    Gradient,
+    /// In the place of each weight f of that weight at 1 and the others at 0, sr^-1; the other places stay as they are, and ln f is not wanted.
+    Columns,
+}
+
 /// What the directions of a scan tell before any fit.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -156,14 +167,11 @@ pub trait Model<R: Real, const P: usize, const C: usize>: Copy {
         lane: usize,
     ) -> Rows<R, GROUP, P>;
 
-    /// The same of a block of one lane.
-    fn row<const GRADIENT: bool>(pass: &Self::Pass, block: &Block<R, 1, C>) -> Rows<R, 1, P>;
+    /// ln f of one lane, and in `row` what is wanted beside it.
+    fn row<const L: usize>(pass: &Self::Pass, block: &Block<R, L, C>, lane: usize, want: Want, row: &mut [R; P]) -> R;
 
     /// f of each weight at 1 and the others at 0, sr^-1, in the lanes of [`Pack::gather`]; in the order of the weights among the parameters.
     fn columns(pass: &Self::Pass, block: &Block<R, LANES, C>, lane: usize) -> [Pack<R, GROUP>; WEIGHTS];
-
-    /// The same of a block of one lane.
-    fn column(pass: &Self::Pass, block: &Block<R, 1, C>) -> [Pack<R, 1>; WEIGHTS];
 
     /// What the directions of a scan tell.
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {

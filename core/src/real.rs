@@ -57,8 +57,16 @@ pub trait Real:
     fn bits(self) -> u64;
     /// A number in `[0, 1)` from the upper bits of a random word.
     fn unit(word: u64) -> Self;
-    /// Exponentials, at most 1 ulp; the arguments are first limited to the range where the result is normal, -708 to 709 (`f64`) or -87 to 88 (`f32`).
-    fn exp_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K>;
+    /// The range where the exponential is normal: -708 to 709 (`f64`) or -87 to 88 (`f32`).
+    const EXPONENTS: (Self, Self);
+
+    /// Exponentials, at most 1 ulp, of arguments within [`Real::EXPONENTS`]; others give an unspecified number or NaN.
+    fn exp_within<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K>;
+    /// Exponentials, at most 1 ulp; the arguments are first limited to [`Real::EXPONENTS`].
+    #[inline(always)]
+    fn exp_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
+        Self::exp_within(x.map(|x| x.max(Self::EXPONENTS.0).min(Self::EXPONENTS.1)))
+    }
     /// Natural logarithms of positive normal numbers, at most 1 ulp; other arguments give an unspecified number.
     fn ln_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K>;
     /// Reciprocals of the square roots of numbers from `MIN_POSITIVE` to its reciprocal, at most 1 ulp; other arguments, 0 among them, give an unspecified number or NaN.
@@ -110,6 +118,7 @@ impl Real for f64 {
     const FAINT: Self = 1e-60;
     const CUT: Self = -300.0;
     const LIFT: Self = 200.0;
+    const EXPONENTS: (Self, Self) = (-708.0, 709.0);
 
     #[inline(always)]
     fn of(x: f64) -> Self {
@@ -131,11 +140,10 @@ impl Real for f64 {
     // e^x = 2^k e^r with |r| <= ln(2)/2; e^r = 1 + r + r^2 q(r), where q is a minimax polynomial, off by 4e-18.
     // Adding 1.5 * 2^52 rounds to the nearest integer and leaves it in the low bits.
     #[inline(always)]
-    fn exp_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
+    fn exp_within<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
         const SHIFT: f64 = 6755399441055744.0;
         const LN2_HI: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
         const LN2_LO: f64 = f64::from_bits(0x3dea_39ef_3579_3c76);
-        let x = x.map(|x| Real::min(Real::max(x, -708.0), 709.0));
         let shifted = x * core::f64::consts::LOG2_E + SHIFT;
         let k = shifted - SHIFT;
         let hi = x - k * LN2_HI;
@@ -238,6 +246,7 @@ impl Real for f32 {
     const FAINT: Self = 1e-3;
     const CUT: Self = -38.0;
     const LIFT: Self = 20.0;
+    const EXPONENTS: (Self, Self) = (-87.0, 88.0);
 
     #[inline(always)]
     fn of(x: f64) -> Self {
@@ -257,11 +266,10 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn exp_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
+    fn exp_within<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K> {
         const SHIFT: f32 = 12582912.0;
         const LN2_HI: f32 = f32::from_bits(0x3f31_7200);
         const LN2_LO: f32 = f32::from_bits(0x35bf_be8e);
-        let x = x.map(|x| Real::min(Real::max(x, -87.0), 88.0));
         let shifted = x * core::f32::consts::LOG2_E + SHIFT;
         let k = shifted - SHIFT;
         let hi = x - k * LN2_HI;

@@ -6,7 +6,7 @@ use crate::brdf::{Params, get, has, slot};
 use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::microfacet::Microfacet;
-use crate::model::{GROUP, Model, Parameter, SUMS, Seen};
+use crate::model::{GROUP, Model, Parameter, SUMS, Seen, Want};
 use crate::pack::{ALONE, Pack};
 use crate::real::Real;
 
@@ -81,13 +81,14 @@ pub fn observe<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
 
 /// ln f of model `M` at the solver's coordinates `x` in the directions of `geometry` ([`Model::geometry`]), f in sr^-1.
 pub fn value<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> R {
-    M::row::<false>(&M::pass(x), &Block::of(geometry)).ln_f.0[0]
+    M::row(&M::pass(x), &Block::of(geometry), 0, Want::Value, &mut [R::ZERO; P])
 }
 
 /// The same, and its derivatives by the solver's coordinates.
 pub fn ln_f<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; P], geometry: [R; C]) -> (R, [R; P]) {
-    let rows = M::row::<true>(&M::pass(x), &Block::of(geometry));
-    (rows.ln_f.0[0], rows.gradient.map(|column| column.0[0]))
+    let mut gradient = [R::ZERO; P];
+    let ln_f = M::row(&M::pass(x), &Block::of(geometry), 0, Want::Gradient, &mut gradient);
+    (ln_f, gradient)
 }
 
 impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'a, R, M, P, C> {
@@ -236,80 +237,6 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         }
         sums
     }
-}
-
-/// The same where lanes do not go side by side: one partial sum after the other, so that few are in memory.
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
-    /// [`Problem::cost`], one lane after the other: the same bits from less code.
-    pub fn scalar_cost(&self, x: &[R; P]) -> R {
-        let pass = M::pass(x);
-        let mut squares = [R::ZERO; SUMS];
-        for block in self.blocks {
-            for (lane, sum) in squares.iter_mut().enumerate() {
-                let [(a, _), (b, _)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(&pass, block, lane));
-                *sum += a * a + b * b;
-            }
-        }
-        total(&squares)
-    }
-
-    /// [`Problem::linearize`], one lane after the other.
-    pub fn scalar_linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        let pass = M::pass(x);
-        // In the order of `total`.
-        let two = |lane| add(self.partial(&pass, lane), &self.partial(&pass, lane + 1));
-        let four = |lane| add(two(lane), &two(lane + 2));
-        let mut sums = add(four(0), &four(4));
-        for i in 0..P {
-            for j in 0..i {
-                sums.hessian[j][i] = sums.hessian[i][j];
-            }
-        }
-        sums
-    }
-
-    /// The sums over one of the first eight lanes, and its other half, of all blocks; of J'J the lower half.
-    #[inline(never)]
-    fn partial(&self, pass: &M::Pass, lane: usize) -> Linearization<R, P> {
-        let mut sums = Linearization::zero();
-        for block in self.blocks {
-            let [(a, a_row), (b, b_row)] = [lane, lane + SUMS].map(|lane| row::<R, M, P, C>(pass, block, lane));
-            sums.cost += a * a + b * b;
-            for i in 0..P {
-                sums.gradient[i] += a_row[i] * a + b_row[i] * b;
-                for j in 0..=i {
-                    sums.hessian[i][j] += a_row[i] * a_row[j] + b_row[i] * b_row[j];
-                }
-            }
-        }
-        sums
-    }
-}
-
-fn add<R: Real, const P: usize>(mut x: Linearization<R, P>, y: &Linearization<R, P>) -> Linearization<R, P> {
-    x.cost += y.cost;
-    for i in 0..P {
-        x.gradient[i] += y.gradient[i];
-        for j in 0..=i {
-            x.hessian[i][j] += y.hessian[i][j];
-        }
-    }
-    x
-}
-
-/// Residual and row of J of one lane.
-fn row<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
-    pass: &M::Pass,
-    block: &Block<R, LANES, C>,
-    lane: usize,
-) -> (R, [R; P]) {
-    let one = block.lane(lane);
-    let model = M::row::<true>(pass, &one);
-    let mut row = [R::ZERO; P];
-    for (value, column) in row.iter_mut().zip(&model.gradient) {
-        *value = column.0[0];
-    }
-    ((model.ln_f.0[0] - one.ln_f[0]) * one.weight[0], row)
 }
 
 #[inline(always)]

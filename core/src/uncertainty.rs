@@ -27,7 +27,7 @@ pub enum Place {
 pub struct Axes<R, const P: usize> {
     /// Row k is the displacement of the parameters along axis k that raises the cost by [`Uncertainty::scale`] squared; 0 for parameters that are held.
     ///
-    /// Along what rounding can not tell from undetermined it is what rounding allows, a lower bound; for a parameter that no residual sees it is the largest number.
+    /// Along what rounding cannot tell from undetermined it is what rounding allows, a lower bound; for a parameter that no residual sees it is the largest number.
     pub rows: [[R; P]; P],
     /// Ratio of the largest to the least eigenvalue of J'J after each column of J is scaled to length 1: 1 to 1 / (P epsilon).
     pub condition: R,

@@ -5,6 +5,7 @@ pub mod choose;
 pub mod converge;
 pub mod derived;
 pub mod fit;
+pub mod hints;
 pub mod paper;
 pub mod paper_sets;
 pub mod profile;

@@ -6,7 +6,8 @@ use std::io::Write;
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    batch, compare, completions, converge, export, fit, joint, man, merge, paper, profile, report, simulate, stability,
+    batch, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report, simulate,
+    stability,
 };
 use crate::error::{EXIT_CODE, Error};
 use crate::plain::{self, Lines};
@@ -19,7 +20,7 @@ use crate::streams::{Ended, Streams};
     version,
     propagate_version = true,
     disable_help_subcommand = true,
-    after_help = "Exit codes: 0 done, 1 some scans of a batch could not be fitted, 2 wrong input or options, 130 interrupted.\n\nExample:\n  brdfit fit paint.csv"
+    after_help = "Exit codes: 0 done, 1 some scans of a batch could not be fitted, 2 wrong input or options, 130 interrupted.\nExample: brdfit fit paint.csv"
 )]
 struct Cli {
     #[command(subcommand)]
@@ -36,6 +37,7 @@ struct Cli {
 #[derive(Subcommand, Debug)]
 enum Command {
     Fit(fit::Arguments),
+    Inspect(inspect::Arguments),
     Report(report::Arguments),
     Batch(batch::Arguments),
     Merge(merge::Arguments),
@@ -119,6 +121,7 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
         Command::Fit(arguments) => return fit::run(arguments, streams),
+        Command::Inspect(arguments) => inspect::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),
         Command::Report(arguments) => report::run(arguments, given, streams),
         Command::Simulate(arguments) => simulate::run(arguments, streams),

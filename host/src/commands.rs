@@ -6,6 +6,7 @@ pub(crate) mod completions;
 pub(crate) mod converge;
 pub(crate) mod export;
 pub(crate) mod fit;
+pub(crate) mod inspect;
 pub(crate) mod joint;
 pub(crate) mod man;
 pub(crate) mod merge;

@@ -64,7 +64,7 @@ impl Error {
 impl Error {
     /// As it prints, with the place in red for a terminal.
     pub fn in_color(&self) -> String {
-        format!("\x1b[1;31m{}\x1b[0m{}", self.place(), self.message())
+        format!("\x1b[1;31m{}\x1b[0m: {}", self.place(), self.message())
     }
 
     /// `file:line:column`, as far as they are known.
@@ -77,20 +77,20 @@ impl Error {
         }
     }
 
-    /// What follows the place.
-    fn message(&self) -> String {
+    /// What is wrong and what to do about it, without the place.
+    pub fn message(&self) -> String {
         // What is wrong may be told in words of a file, such as the name of a column.
         let what = plain(&self.what);
         match &self.help {
-            Some(help) => format!(": {what}; {}", plain(help)),
-            None => format!(": {what}"),
+            Some(help) => format!("{what}; {}", plain(help)),
+            None => what.into_owned(),
         }
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.place(), self.message())
+        write!(f, "{}: {}", self.place(), self.message())
     }
 }
 

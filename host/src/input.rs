@@ -9,6 +9,7 @@ pub mod bytes;
 mod channel;
 pub mod check;
 pub mod columns;
+mod cut;
 mod direction;
 mod doubt;
 mod facts;
@@ -18,14 +19,17 @@ pub mod head;
 mod join;
 pub mod left_out;
 pub mod options;
+pub mod own;
 pub mod part;
+pub mod plane;
 mod polarisation;
 pub mod raw;
 mod repeats;
 pub mod role;
 mod rows;
 mod sheet;
-mod side;
+pub mod side;
+pub mod source;
 mod table;
 pub mod uncertainty;
 pub mod unit;
@@ -48,6 +52,7 @@ use format::Format;
 pub use left_out::LeftOut;
 pub use options::{ReadAs, ReadOptions};
 use raw::RawScan;
+use source::Source;
 pub use units::azimuth;
 
 /// A scan as it was read.
@@ -106,9 +111,17 @@ pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> R
     if options.one_scan {
         files = vec![join::one(files)?];
     }
+    let several = files.len() > 1;
     let mut measurements = Vec::new();
     for (file, scans) in files {
         measurements.extend(measured(&file, scans, options)?);
+    }
+    // One file an angle of incidence is most often one scan.
+    if several && measurements.iter().all(|measurement| measurement.about.one_angle) {
+        let note = "this is one angle of incidence; --one-scan takes all files as one scan".to_string();
+        measurements
+            .iter_mut()
+            .for_each(|measurement| measurement.about.notes.push(note.clone()));
     }
     Ok(measurements)
 }
@@ -184,7 +197,10 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
         options.refuse_for(scan.about.kind, format)?;
     }
     let mut scans = raw::select(scans, &options.column)?;
+    cut::suspect(format, bytes, &mut scans);
     for scan in &mut scans {
+        scan.about.sources.push(Source::new(file, bytes));
+        scan.about.asked = options.clone();
         about::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;
@@ -204,7 +220,7 @@ fn measured(
         .collect()
 }
 
-/// Says of a scan that can not be fitted what to do, and names the line instead of the sample.
+/// Says of a scan that cannot be fitted what to do, and names the line instead of the sample.
 pub fn explain(measurement: &Measurement, error: FitError) -> Error {
     let plain = Error::new(error.to_string()).in_file(measurement.label());
     match error {
@@ -214,6 +230,7 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .at_line(measurement.lines[index])
             .help("take f64, or leave out the row"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
-        FitError::Terms(_) => plain,
+        FitError::Terms(_) | FitError::Interrupted => plain,
+        FitError::NoProof(_) => plain.help("only the model of Eq. 14 has a proof"),
     }
 }

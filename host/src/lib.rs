@@ -11,6 +11,7 @@
 //! | [`input`] | a file becomes one or more [`input::Measurement`]s |
 //! | [`analysis`] | a measurement becomes an [`analysis::fit::FittedScan`]; choice of terms, bootstrap, profiles, studies |
 //! | [`result`](mod@result) | a fitted scan as text, JSON or CSV |
+//! | [`records`] | fitted files kept one by one: finished fits, parts of a batch |
 //! | [`plot`] | figures as SVG, from plain data |
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
@@ -18,7 +19,7 @@
 //! | `commands` | one file or folder a command |
 //! | [`cli`] | the command line, which strings the commands together |
 //!
-//! Every failure is an [`error::Error`].
+//! Every failure is an [`error::Error`]; [`guide`] has one page a task.
 
 pub use brdfit_engine as engine;
 
@@ -27,6 +28,7 @@ pub mod cli;
 mod commands;
 pub mod error;
 pub mod export;
+pub mod guide;
 pub mod input;
 pub mod interrupt;
 pub mod names;
@@ -37,6 +39,7 @@ pub mod page;
 pub mod parameters;
 pub mod plain;
 pub mod plot;
+pub mod records;
 pub mod result;
 pub mod streams;
 pub mod target;

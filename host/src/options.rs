@@ -1,11 +1,13 @@
 //! What the options of the command line mean to the engine.
 
 use brdfit_core::brdf::ALL;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
+use crate::names::{METHODS, PRECISIONS};
 use crate::parameters::{Range, apply, check, model, parameter};
 use crate::terms::terms;
 
@@ -13,8 +15,8 @@ use crate::terms::terms;
 #[derive(Args, Debug)]
 pub struct SearchArguments {
     /// How to search: candidates and short fits, or the paper's full fits from uniform starts
-    #[arg(long, value_enum, default_value = "default")]
-    method: MethodName,
+    #[arg(long, value_name = "METHOD", value_parser = one_of(&METHODS), default_value = METHODS[0].0)]
+    method: Method,
     /// Number of starts [default: the method's own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     starts: Option<u32>,
@@ -37,23 +39,24 @@ pub struct SearchArguments {
     #[arg(long)]
     robust: bool,
     /// Number type of the computation
-    #[arg(long, value_enum, default_value = "f64")]
-    precision: PrecisionName,
+    #[arg(long, value_name = "PRECISION", value_parser = one_of(&PRECISIONS), default_value = PRECISIONS[0].0)]
+    precision: Precision,
     /// Number of threads, which changes no bit [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum MethodName {
-    Default,
-    Paper,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum PrecisionName {
-    F64,
-    F32,
+/// One of these, by its name.
+fn one_of<T: Clone + Send + Sync>(known: &'static [(&'static str, T)]) -> impl TypedValueParser<Value = T> {
+    let value = |name: String| {
+        known
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(_, value)| value.clone())
+    };
+    // The parser of the names lets no other through.
+    PossibleValuesParser::new(known.iter().map(|(name, _)| *name))
+        .try_map(move |name| value(name).ok_or("no such name"))
 }
 
 impl SearchArguments {
@@ -64,14 +67,8 @@ impl SearchArguments {
     pub fn fit_options(&self) -> Result<FitOptions, Error> {
         let model = model(&self.model)?;
         let mut options = FitOptions {
-            method: match self.method {
-                MethodName::Default => Method::Default,
-                MethodName::Paper => Method::Paper,
-            },
-            precision: match self.precision {
-                PrecisionName::F64 => Precision::F64,
-                PrecisionName::F32 => Precision::F32,
-            },
+            method: self.method,
+            precision: self.precision,
             seed: self.seed,
             starts: self.starts,
             robust: self.robust,
@@ -125,7 +122,9 @@ pub fn bounds(model: &Model, text: &str) -> Result<Range, Error> {
 /// # Errors
 /// Another form, an unknown name, or a value outside the parameter's domain.
 pub fn fixed(model: &Model, text: &str, option: &str) -> Result<Range, Error> {
-    let form = || Error::new(format!("'{}' fixes nothing", shown(text))).help(format!("write {option} NAME=VALUE"));
+    let form = || {
+        Error::new(format!("'{}' gives no parameter a value", shown(text))).help(format!("write {option} NAME=VALUE"))
+    };
     let (name, value) = text.split_once('=').ok_or_else(form)?;
     let index = parameter(model, name)?;
     let value = number(value)?;

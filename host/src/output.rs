@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::input::STDIN;
 use crate::interrupt;
 use crate::plain;
-use crate::target::Target;
+use crate::target::{Target, stdout_is_no_input};
 
 /// In which form a result leaves, and where to: options of most commands.
 #[derive(Args, Debug)]
@@ -76,7 +76,7 @@ pub fn json(value: &impl Serialize) -> String {
     plain::json(&written).into_owned() + "\n"
 }
 
-/// Writes a row of a table whose cells show all that is in them, and are no formulas.
+/// Writes a row of a table whose cells show all that is in them, and are not formulas.
 ///
 /// # Errors
 /// The stream breaks.
@@ -84,25 +84,18 @@ pub fn write_row(writer: &mut csv::Writer<impl Write>, row: &[impl AsRef<str>]) 
     writer.write_record(row.iter().map(|text| plain::cell(text.as_ref()).into_owned()))
 }
 
-/// The shortest decimal form that reads back as the same number.
-pub fn shortest(x: f64) -> String {
-    let size = x.abs();
-    if x == 0.0 || (1e-5..1e16).contains(&size) {
-        format!("{x}")
-    } else {
-        format!("{x:e}")
-    }
-}
-
 /// Where a result goes: a file that may be written, or standard output for none or `-`.
 ///
 /// # Errors
-/// As [`Target::new`].
+/// As [`Target::new`], and if standard output goes to one of the inputs.
 pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option<Target>, Error> {
     let target = path
         .filter(|path| path.as_os_str() != STDIN)
         .map(|path| Target::new(path, inputs))
         .transpose()?;
+    if target.is_none() {
+        stdout_is_no_input(inputs)?;
+    }
     interrupt::await_reader(target.is_none());
     Ok(target)
 }
@@ -110,7 +103,7 @@ pub fn target(path: Option<&Path>, inputs: &[impl AsRef<Path>]) -> Result<Option
 /// Writes to a file, or to the stream if there is none.
 ///
 /// # Errors
-/// As [`Target::write`], and if the stream breaks; a reader that wants no more, such as `head`, is no error.
+/// As [`Target::write`], and if the stream breaks; a reader that closes early, such as `head`, is not an error.
 pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write) -> Result<(), Error> {
     match target {
         Some(target) => target.write(contents),
@@ -121,7 +114,7 @@ pub fn deliver(contents: &[u8], target: Option<&Target>, stream: &mut dyn Write)
 /// Writes to standard output.
 ///
 /// # Errors
-/// The stream breaks, or what `write` fails with; a reader that wants no more, such as `head`, is no error.
+/// The stream breaks, or what `write` fails with; a reader that closes early, such as `head`, is not an error.
 pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
     interrupt::await_reader(false);
     match write(stream).and_then(|()| stream.flush()) {
@@ -129,19 +122,5 @@ pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> i
             .downcast::<Error>()
             .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}")))),
         _ => Ok(()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_read_back() {
-        for x in [0.0, 45.0, -85.5, 0.1, 1e-33, 2.5e300, 1.0 / 3.0, f64::MIN_POSITIVE] {
-            assert_eq!(shortest(x).parse::<f64>().unwrap(), x);
-        }
-        assert_eq!(shortest(45.0), "45");
-        assert_eq!(shortest(1e-33), "1e-33");
     }
 }

@@ -2,18 +2,8 @@
 
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::terms::term_names;
-
-/// What the parameters of [`NAMES`] mean.
-pub const MEANINGS: [&str; 6] = [
-    "diffuse reflectance",
-    "weight of the surface lobe",
-    "weight of the volume lobe",
-    "slope of the facets",
-    "index of refraction, real part",
-    "index of refraction, imaginary part",
-];
 
 /// A permitted range of one parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +42,7 @@ pub fn apply(ranges: &[Range], options: &mut FitOptions) -> Result<(), Error> {
         }
         if options.model.left_out(options.terms, range.index) {
             let names = term_names(options.terms).join(",");
-            return Err(Error::new(format!("{name} is no parameter of the terms {names}"))
+            return Err(Error::new(format!("{name} is not a parameter of the terms {names}"))
                 .help("leave out its --bounds or --fix, or take more --terms"));
         }
         options.lower[range.index] = range.lower;
@@ -64,7 +54,7 @@ pub fn apply(ranges: &[Range], options: &mut FitOptions) -> Result<(), Error> {
 /// The place of a parameter of the model.
 ///
 /// # Errors
-/// There is none of this name.
+/// No such name.
 pub fn parameter(model: &Model, name: &str) -> Result<usize, Error> {
     model.place(name.trim()).ok_or_else(|| {
         let names: Vec<&str> = model.parameters.iter().map(|parameter| parameter.name).collect();
@@ -76,7 +66,7 @@ pub fn parameter(model: &Model, name: &str) -> Result<usize, Error> {
 /// The model of this name.
 ///
 /// # Errors
-/// There is none of this name.
+/// No such name.
 pub fn model(name: &str) -> Result<&'static Model, Error> {
     Model::find(name.trim()).ok_or_else(|| {
         let names: Vec<&str> = crate::engine::models::MODELS.iter().map(|model| model.name).collect();

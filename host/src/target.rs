@@ -5,7 +5,13 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::input::STDIN;
 use crate::interrupt;
+
+/// Standard input as a file, where the system has that.
+const STDIN_FILE: &str = "/dev/stdin";
+/// Standard output as a file.
+const STDOUT_FILE: &str = "/dev/stdout";
 
 /// For a command that reads nothing.
 pub const NO_INPUTS: [&Path; 0] = [];
@@ -122,12 +128,28 @@ impl AsRef<Path> for Target {
     }
 }
 
-/// Is the file at `path` one of these, also by another name or through a link?
+/// Refuses a standard output that goes to one of the inputs, as `fit a.csv >> a.csv` would have it.
+///
+/// # Errors
+/// It does.
+pub fn stdout_is_no_input(inputs: &[impl AsRef<Path>]) -> Result<(), Error> {
+    if is_one_of(STDOUT_FILE.as_ref(), inputs) {
+        return Err(Error::new("standard output goes to an input").help("send it to another file"));
+    }
+    Ok(())
+}
+
+/// Is the file at `path` one of these, also by another name or through a link? `-` is what standard input is read from.
 pub fn is_one_of(path: &Path, others: &[impl AsRef<Path>]) -> bool {
     let Some(own) = identity(path) else { return false };
-    others
-        .iter()
-        .any(|other| identity(other.as_ref()).as_ref() == Some(&own))
+    let read = |path: &Path| {
+        identity(if path.as_os_str() == STDIN {
+            STDIN_FILE.as_ref()
+        } else {
+            path
+        })
+    };
+    others.iter().any(|other| read(other.as_ref()).as_ref() == Some(&own))
 }
 
 /// What tells a regular file from all others; `None` if there is none.

@@ -157,6 +157,34 @@ fn every_command_ends_and_says_what_is_left() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn long_fits_end_between_passes() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = scans(root.path());
+    for (arguments, why) in [
+        (
+            &["fit", "00.csv", "01.csv", "--output", "out.csv", "--format", "csv"][..],
+            "0 of 2 scans are fitted",
+        ),
+        (&["fit", "00.csv", "01.csv", "--robust"], "0 of 2 scans are fitted"),
+        (
+            &["batch", ".", "--out", "../out.csv", "--threads", "2"],
+            "0 of 40 files are done; they are kept in ../out.csv.partial",
+        ),
+    ] {
+        let mut child = endless(&[arguments, &LONG[..]].concat(), &folder);
+        listens(&mut child);
+        signal(&child, "-INT");
+        let (code, output, errors) = ended(child);
+        assert_eq!((code, output.as_str()), (Some(130), ""), "{arguments:?}: {errors}");
+        let said: Vec<&str> = errors.lines().collect();
+        assert_eq!(said[0], "interrupted: what is finished is kept; once more ends at once");
+        assert!(said.len() == 2 && said[1].contains(why), "{errors}");
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 40);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn a_result_that_nobody_reads_is_not_waited_for() {
     let root = tempfile::tempdir().unwrap();
     let folder = scans(root.path());

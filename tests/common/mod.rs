@@ -4,8 +4,10 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
+pub mod claims;
 pub mod double_double;
 pub mod dual;
+pub mod interval_oracle;
 pub mod literal;
 pub mod mgh_problems;
 pub mod nist_models;

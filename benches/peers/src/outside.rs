@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The lines that `program` prints, by cells; none, and a word on standard error, if it can not be run.
+/// The lines that `program` prints, by cells; none, and a word on standard error, if it cannot be run.
 pub fn rows(program: &str, arguments: &[&Path]) -> Vec<Vec<String>> {
     let output = Command::new(program).args(arguments).stderr(Stdio::inherit()).output();
     match output {

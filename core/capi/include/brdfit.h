@@ -146,11 +146,11 @@ enum brdfit_error
    */
   BRDFIT_ERROR_NOT_POSITIVE = -7,
   /**
-   * A parameter has a value that it can not have: see brdfit_params.
+   * A parameter has a value that it cannot have: see brdfit_params.
    */
   BRDFIT_ERROR_PARAMS = -8,
   /**
-   * Lower bounds are above the upper ones, or a bound has a value that its parameter can not have.
+   * Lower bounds are above the upper ones, or a bound has a value that its parameter cannot have.
    */
   BRDFIT_ERROR_BOUNDS = -9,
   /**

@@ -29,7 +29,7 @@ pub extern "C" fn brdfit_error_text(error: i32) -> *const c_char {
         -5 => c"a number is NaN or infinite",
         -6 => c"an angle is at or beyond the horizon",
         -7 => c"a BRDF or a weight is not positive",
-        -8 => c"a parameter has a value that it can not have",
+        -8 => c"a parameter has a value that it cannot have",
         -9 => c"the bounds are the wrong way round, or not values of their parameters",
         -10 => c"no model has just these terms",
         -11 => c"a tolerance, the damping or a count is out of range",

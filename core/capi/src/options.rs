@@ -27,7 +27,7 @@ fn default_options<R: Real>() -> brdfit_options<R> {
     }
 }
 
-/// Refuses values that the parameters can not have.
+/// Refuses values that the parameters cannot have.
 pub fn check_params<R: Real>(params: &brdfit_params<R>) -> Done {
     let least = [0.0, 0.0, 0.0, 1e-6, 1.0, 0.0].map(R::of);
     for (value, least) in Params::from(*params).to_array().into_iter().zip(least) {

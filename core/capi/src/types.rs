@@ -77,9 +77,9 @@ pub enum brdfit_error {
     BeyondHorizon = -6,
     /// A BRDF or a weight is zero or negative.
     NotPositive = -7,
-    /// A parameter has a value that it can not have: see brdfit_params.
+    /// A parameter has a value that it cannot have: see brdfit_params.
     Params = -8,
-    /// Lower bounds are above the upper ones, or a bound has a value that its parameter can not have.
+    /// Lower bounds are above the upper ones, or a bound has a value that its parameter cannot have.
     Bounds = -9,
     /// There is no model of just these terms.
     Terms = -10,

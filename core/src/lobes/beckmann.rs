@@ -15,7 +15,8 @@ impl Distribution for Beckmann {
     #[inline(always)]
     fn shape<R: Real, const K: usize>(t: Pack<R, K>, shift: Pack<R, K>, _q: R) -> Pack<R, K> {
         let exponent = (t.map(|t| -t) - shift).map(|x| x.min(R::LIFT));
-        exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e })
+        // What is too low for it is cut.
+        exponent.zip(R::exp_within(exponent), |x, e| if x < R::CUT { R::ZERO } else { e })
     }
 
     #[inline(always)]

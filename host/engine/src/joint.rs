@@ -40,7 +40,7 @@ pub struct Fitted {
 /// `shared` tells of each of the model's parameters whether it is the same in all scans.
 ///
 /// # Errors
-/// The place of the scan that can not be fitted, and why.
+/// The place of the scan that cannot be fitted, and why.
 pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
     let (model, mut options) = (options.model, *options);
     model.hold(&mut options);

@@ -13,12 +13,14 @@ mod outcome;
 mod search;
 mod values;
 
+pub mod certify;
 pub mod joint;
 pub mod models;
 pub mod robust;
 pub mod simd;
 pub mod trace;
 pub mod uncertainty;
+pub mod until;
 
 pub use compiled::{Both, Kernel, blocks, blocks_of};
 pub use material::Material;
@@ -26,4 +28,5 @@ pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
 pub use outcome::{FitError, Minimum, Outcome};
 pub use search::{descend, fit};
+pub use until::Until;
 pub use values::{MOST, Values};

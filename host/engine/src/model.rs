@@ -10,7 +10,6 @@ use crate::simd::SCALAR;
 use crate::{FitError, FitOptions, Values};
 
 /// A model that scans can be fitted with, one of [`MODELS`].
-#[derive(Debug)]
 pub struct Model {
     /// What options and results call it.
     pub name: &'static str,
@@ -20,11 +19,18 @@ pub struct Model {
     pub source: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
-    /// The terms that can be left out of it; 0 if it is no microfacet model.
+    /// The terms that can be left out of it; 0 if it is not a microfacet model.
     pub terms: u8,
     pub(crate) whole: Whole,
     /// Sets of its terms that are compiled on their own.
     pub(crate) sets: &'static [Compiled],
+}
+
+/// The name, which is the same in every process, as the addresses of the computations are not.
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
 }
 
 impl PartialEq for Model {

@@ -4,6 +4,7 @@ use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::search::{CANDIDATES, PAPER_STARTS};
 
 use crate::simd::Simd;
+use crate::until::Until;
 use crate::{Model, Values};
 
 /// How the global optimum is searched.
@@ -49,6 +50,8 @@ pub struct FitOptions {
     pub robust: bool,
     /// The vector instructions; they change speed and no bit.
     pub simd: Simd,
+    /// Until when the search is wanted; this changes no bit either.
+    pub until: Until,
 }
 
 impl Default for FitOptions {
@@ -72,6 +75,7 @@ impl FitOptions {
             precision: Precision::F64,
             robust: false,
             simd: Simd::best(),
+            until: Until::default(),
         }
     }
 

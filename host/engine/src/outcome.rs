@@ -1,4 +1,4 @@
-//! What a fit gives, or why there is none.
+//! What a fit gives, or why it failed.
 
 use brdfit_core::geometry::SampleError;
 use brdfit_core::lm::Stop;
@@ -63,6 +63,10 @@ pub enum FitError {
     TooFew(usize, usize),
     /// No compiled set has these terms.
     Terms(u8),
+    /// There is no proof of the optimum for the model of this name.
+    NoProof(&'static str),
+    /// The fit was no longer wanted: see [`crate::Until`].
+    Interrupted,
 }
 
 impl Outcome {
@@ -90,9 +94,11 @@ impl std::fmt::Display for FitError {
         match self {
             FitError::Sample(index, error) => write!(f, "sample {}: {error}", index + 1),
             FitError::TooFew(samples, parameters) => {
-                write!(f, "{samples} samples can not determine {parameters} parameters")
+                write!(f, "{samples} samples cannot determine {parameters} parameters")
             }
+            FitError::NoProof(model) => write!(f, "there is no proof of the optimum for the model {model}"),
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
+            FitError::Interrupted => f.write_str("interrupted"),
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::compiled::Kernel;
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
 use crate::outcome::{FitError, Minimum, Outcome};
+use crate::until::Watched;
 use crate::{Values, robust, uncertainty};
 
 /// Fits one scan; threads of the current rayon pool share the starts of the `paper` method, and change no bit.
@@ -81,6 +82,10 @@ pub(crate) fn run<R: Real, const P: usize>(
     options: &FitOptions,
 ) -> Result<Outcome, FitError> {
     let layout = Layout::new(own, options.model);
+    let scene = &Watched {
+        scene,
+        until: options.until,
+    };
     let bounds: Bounds<R, P> = layout.bounds(options);
     let lm = Options::default();
     let starts = options.starts();
@@ -94,6 +99,9 @@ pub(crate) fn run<R: Real, const P: usize>(
             search::paper(scene, &bounds, fits, &lm)
         }
     };
+    if options.until.is_over() {
+        return Err(FitError::Interrupted);
+    }
     let count = samples.len() as f64;
     let mse2 = |cost: R| cost.f64() / (count * count);
     let minima: Vec<Minimum> = found

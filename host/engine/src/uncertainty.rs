@@ -17,7 +17,7 @@ pub struct Uncertainty {
     pub scale: f64,
     /// Samples less parameters inside their bounds.
     pub degrees_of_freedom: usize,
-    /// Where each parameter ended; `None` where it is no part of the model.
+    /// Where each parameter ended; `None` where the model does not have it.
     pub places: Vec<Option<Place>>,
     /// How far beyond its bound the data want a parameter that is on one, in standard errors, positive towards larger values.
     pub push: Values,

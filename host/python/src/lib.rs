@@ -105,7 +105,7 @@ fn fit_many<'py>(
     for first in (0..count).step_by(CHUNK) {
         let chunk = first..count.min(first + CHUNK);
         let one = |scan| row(&scans, scan, invalid, &options, &table);
-        let done: Result<Vec<Row>, String> = py.detach(|| pool.install(|| chunk.into_par_iter().map(one).collect()));
+        let done: Result<Vec<Kept>, String> = py.detach(|| pool.install(|| chunk.into_par_iter().map(one).collect()));
         for mut row in done.map_err(PyValueError::new_err)? {
             table.push(row.cells.take());
             rows.push(row);
@@ -119,7 +119,7 @@ fn fit_many<'py>(
     result.set_item("cov", cov.into_pyarray(py))?;
     let stderr = Array2::from_shape_fn((count, 6), |(scan, k)| rows[scan].stderr[k]);
     result.set_item("stderr", stderr.into_pyarray(py))?;
-    let column = |of: fn(&Row) -> f64| rows.iter().map(of).collect::<Array1<f64>>().into_pyarray(py);
+    let column = |of: fn(&Kept) -> f64| rows.iter().map(of).collect::<Array1<f64>>().into_pyarray(py);
     result.set_item("fun", column(|row| row.fun))?;
     result.set_item("mse2", column(|row| row.mse2))?;
     result.set_item(
@@ -146,7 +146,7 @@ fn square(rows: &[Values]) -> Array2<f64> {
 }
 
 /// What is kept of the fit of one scan of many.
-struct Row {
+struct Kept {
     x: Values,
     cov: Vec<Values>,
     stderr: Values,
@@ -158,10 +158,10 @@ struct Row {
     cells: Option<Vec<Cell>>,
 }
 
-fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions, table: &Table) -> Result<Row, String> {
+fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions, table: &Table) -> Result<Kept, String> {
     let samples = scans.samples(scan, drop_invalid)?;
     match engine::fit(&samples, options) {
-        Ok(outcome) => Ok(Row {
+        Ok(outcome) => Ok(Kept {
             x: outcome.params,
             fun: outcome.cost,
             mse2: outcome.mse2,
@@ -171,7 +171,7 @@ fn row(scans: &Scans, scan: usize, drop_invalid: bool, options: &FitOptions, tab
             stderr: outcome.uncertainty.stderr,
             cov: outcome.uncertainty.cov,
         }),
-        Err(FitError::TooFew(..)) if drop_invalid => Ok(Row {
+        Err(FitError::TooFew(..)) if drop_invalid => Ok(Kept {
             x: [f64::NAN; 6].into(),
             cov: vec![[f64::NAN; 6].into(); 6],
             stderr: [f64::NAN; 6].into(),
@@ -214,10 +214,10 @@ fn brdf<'py>(
             return Ok(f64::NAN);
         }
         for (k, value) in x.into_iter().enumerate() {
-            check(Model::paper(), k, value).map_err(|error| error.to_string().replace("error: ", ""))?;
+            check(Model::paper(), k, value).map_err(|error| error.message())?;
         }
         let ln_f = Brdf::<f64, ALL>::new(&Params::from_array(x)).ln_f(&geometry);
-        // Below this the exponential is no normal number.
+        // Below this the exponential is not a normal number.
         const LEAST_LN: f64 = -708.0;
         Ok(match ln {
             true => ln_f,

@@ -2,7 +2,7 @@
 
 use brdfit::input::azimuth;
 use brdfit::input::weight::{self, Source};
-use brdfit::output::shortest;
+use brdfit::number::shortest;
 use brdfit_core::geometry::{Observation, Sample};
 use numpy::PyReadonlyArray2;
 use numpy::ndarray::ArrayView2;
@@ -77,7 +77,7 @@ impl Scans<'_> {
         Ok(samples)
     }
 
-    /// One over the standard deviation of ln f; 0 or not finite where that is no number above 0.
+    /// One over the standard deviation of ln f; 0 or not finite where that is not a number above 0.
     fn weight(&self, at: [usize; 2]) -> f64 {
         match &self.sigma {
             Some(sigma) => 1.0 / (sigma[at] / self.brdf[at]),
@@ -103,7 +103,7 @@ impl Scans<'_> {
             if !range.contains(&degrees) {
                 let help = "take degrees, 0 <= theta_i < 90 and -90 < theta_s < 90, or drop_invalid=True";
                 return format!(
-                    "{} is {}, which is no angle above the horizon; {help}",
+                    "{} is {}, which is not an angle above the horizon; {help}",
                     place(name),
                     shortest(degrees)
                 );
@@ -117,12 +117,15 @@ impl Scans<'_> {
         {
             let help = "leave the sample out, or take drop_invalid=True";
             let value = shortest(sigma[at]);
-            return format!("{} is {value}, which is no standard deviation; {help}", place("sigma"));
+            return format!(
+                "{} is {value}, which is not a standard deviation; {help}",
+                place("sigma")
+            );
         }
         let why = if brdf.is_finite() && brdf <= 0.0 {
             "which has no logarithm"
         } else {
-            "which is no number to compute with"
+            "which is not a number to compute with"
         };
         format!(
             "{} is {}, {why}; leave the sample out, or take drop_invalid=True",

@@ -1,6 +1,7 @@
 //! What the keyword arguments mean to the engine.
 
-use brdfit::engine::{FitOptions, Method, Model, TERM_SETS};
+use brdfit::engine::{FitOptions, Model, TERM_SETS};
+use brdfit::names::METHODS;
 use brdfit::parameters::{Range, apply, check};
 use brdfit::terms;
 use pyo3::exceptions::PyValueError;
@@ -24,15 +25,16 @@ impl Settings {
     /// # Errors
     /// `ValueError`, one line that names the argument.
     pub fn options(&self) -> PyResult<FitOptions> {
+        let method = METHODS.iter().find(|(name, _)| *name == self.method);
+        let &(_, method) = method.ok_or_else(|| {
+            let names = METHODS.map(|(name, _)| format!("{name:?}")).join(" or ");
+            refuse(
+                &format!("there is no method {:?}", self.method),
+                &format!("method is {names}"),
+            )
+        })?;
         let mut options = FitOptions {
-            method: match self.method.as_str() {
-                "default" => Method::Default,
-                "paper" => Method::Paper,
-                other => {
-                    let what = format!("there is no method {other:?}; method is \"default\" or \"paper\"");
-                    return Err(PyValueError::new_err(what));
-                }
-            },
+            method,
             seed: self.seed,
             terms: terms(&self.terms)?,
             ..FitOptions::default()

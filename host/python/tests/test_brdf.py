@@ -44,7 +44,7 @@ def test_absent_terms_and_underflow():
         ((30, [0, 95], PARAMETERS), "^the angle is at or beyond the horizon at theta_i = 30, theta_s = 95 degrees; "),
         ((-1, 0, PARAMETERS), "^the angle is at or beyond the horizon at theta_i = -1, .*take 0 <= theta_i < 90"),
         ((30, 0, {"sigma": 1}), "^there is no parameter 'sigma'; the parameters are rho_d, "),
-        ((30, 0, {"n": 0.9}), "^n can not be 0.9; take a number from 1 to 1000000$"),
+        ((30, 0, {"n": 0.9}), "^n cannot be 0.9; take a number from 1 to 1000000$"),
         ((30, 0, [1, 2, 3]), r"^parameters has the shape \(3,\); its last axis takes the 6 of NAMES$"),
         ((30, [0, 1], np.ones((3, 6))), r"^the shapes do not broadcast: .*theta_s \(2,\), .*parameters \(3,\)$"),
     ],

@@ -112,7 +112,7 @@ def test_many_are_each_as_one(cube):
             assert np.array_equal(column[place], np.array(one.table[name], column.dtype), equal_nan=True), name
         assert (one.table["mse2"], one.table["m"], one.table["stop"]) == (one.mse2, one.x[3], "cost")
         assert one.table["terms"] == ["diffuse", "surface", "volume", "absorbing"]
-    # Angles of their own for each scan, Fortran order, steps, and a thread are no other numbers.
+    # Angles of their own for each scan, Fortran order, steps and a single thread change no number.
     angles = np.asfortranarray(np.broadcast_to(theta_s, measured.shape))
     other = brdfit.fit_many(np.full((2, 1, 1), 30), angles[..., ::-1], measured[..., ::-1], threads=1)
     assert other.success.all()
@@ -178,22 +178,22 @@ TERM_SETS = r"terms is one of: diffuse \| diffuse,surface \|"
     "arguments, keywords, message",
     [
         ((30, ANGLES, -VALUES), {}, r"^brdf\[0\] is -1, which has no logarithm; leave the sample out"),
-        ((30, ANGLES, VALUES * 1e-310), {}, r"^brdf\[0\] is 1e-310, which is no number to compute with; "),
+        ((30, ANGLES, VALUES * 1e-310), {}, r"^brdf\[0\] is 1e-310, which is not a number to compute with; "),
         ((-30, ANGLES, VALUES), {}, r"^theta_i\[0\] is -30, .*; take degrees, 0 <= theta_i < 90"),
         ((30, ANGLES * 10, VALUES), {}, r"^theta_s\[9\] is 90, "),
         ((30, ANGLES, VALUES), {"delta_phi": np.nan}, r"^delta_phi\[0\] is NaN, "),
-        ((30, ANGLES, VALUES), {"sigma": 0}, r"^sigma\[0\] is 0, which is no standard deviation; "),
-        ((30, ANGLES, VALUES), {"sigma": np.inf}, r"^sigma\[0\] is inf, which is no standard deviation; "),
+        ((30, ANGLES, VALUES), {"sigma": 0}, r"^sigma\[0\] is 0, which is not a standard deviation; "),
+        ((30, ANGLES, VALUES), {"sigma": np.inf}, r"^sigma\[0\] is inf, which is not a standard deviation; "),
         ((30, ANGLES, -VALUES), {"sigma": 1}, r"^brdf\[0\] is -1, which has no logarithm; "),
         (
             (30, ANGLES[:5], VALUES[:5]),
             {},
-            "^5 samples can not determine 6 parameters; measure more, or leave out terms$",
+            "^5 samples cannot determine 6 parameters; measure more, or leave out terms$",
         ),
         ((30, ANGLES, VALUES[:5]), {}, r"^the shapes do not broadcast: theta_i \(\), theta_s \(10,\), .*brdf \(5,\)$"),
         ((30, ANGLES, 1.0), {}, r"^brdf has the shape \(\), the others ask for \(10,\); give one BRDF a sample$"),
         ((30, ANGLES, [VALUES]), {}, r"^brdf has the shape \(1, 10\); fit takes one scan, fit_many several$"),
-        ((30, ANGLES, ["a"] * 10), {}, "^brdf is no array of numbers: "),
+        ((30, ANGLES, ["a"] * 10), {}, "^brdf is not an array of numbers: "),
         ((30, ANGLES, VALUES), {"terms": "shiny"}, f"^there is no term 'shiny'; {TERM_SETS}"),
         ((30, ANGLES, VALUES), {"terms": ["volume"]}, f"^there is no model of just the terms volume; {TERM_SETS}"),
         (
@@ -201,11 +201,11 @@ TERM_SETS = r"terms is one of: diffuse \| diffuse,surface \|"
             {"bounds": {"m": (2, 1)}},
             r'^the bounds of m are the wrong way round; write "m": \(1, 2\)$',
         ),
-        ((30, ANGLES, VALUES), {"bounds": {"n": 0.5}}, "^n can not be 0.5; bounds take numbers from 1 to 1000000$"),
-        ((30, ANGLES, VALUES), {"bounds": {"n": np.nan}}, "^n can not be NaN; "),
+        ((30, ANGLES, VALUES), {"bounds": {"n": 0.5}}, "^n cannot be 0.5; bounds take numbers from 1 to 1000000$"),
+        ((30, ANGLES, VALUES), {"bounds": {"n": np.nan}}, "^n cannot be NaN; "),
         ((30, ANGLES, VALUES), {"bounds": {"n": (1, 2, 3)}}, r"^bounds\['n'\] is \(1, 2, 3\); give \(least, largest\)"),
         ((30, ANGLES, VALUES), {"bounds": {"q": 1}}, '^there is no parameter "q"; the parameters are rho_d, '),
-        ((30, ANGLES, VALUES), {"bounds": {"m": 1}, "terms": "diffuse"}, "^m is no parameter of the terms diffuse; "),
+        ((30, ANGLES, VALUES), {"bounds": {"m": 1}, "terms": "diffuse"}, "^m is not a parameter of the terms diffuse; "),
         ((30, ANGLES, VALUES), {"method": "best"}, '^there is no method "best"; method is "default" or "paper"$'),
         ((30, ANGLES, VALUES), {"seed": -1}, "^seed is -1; take a whole number from 0 "),
         ((30, ANGLES, VALUES), {"seed": 2**64}, "^seed is 18446744073709551616; "),
@@ -222,5 +222,5 @@ def test_bad_input_of_many():
         brdfit.fit_many(30, ANGLES, VALUES)
     with pytest.raises(ValueError, match="^threads is 0; "):
         brdfit.fit_many(30, ANGLES, [VALUES], threads=0)
-    with pytest.raises(ValueError, match="^5 samples can not determine 6 parameters; "):
+    with pytest.raises(ValueError, match="^5 samples cannot determine 6 parameters; "):
         brdfit.fit_many(30, ANGLES[:5], [VALUES[:5]])

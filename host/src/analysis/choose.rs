@@ -1,21 +1,44 @@
 //! The smallest set of terms that a scan supports.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
+use brdfit_core::brdf::DIFFUSE;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use crate::engine::robust;
-use crate::engine::{self, FitError, FitOptions, Outcome, Precision};
+use crate::engine::{self, FitError, FitOptions, Outcome, Precision, TERM_SETS};
 
-/// The sets in order of size, each with the one that it is tested against.
-pub const SETS: [(u8, Option<u8>); 5] = [
-    (DIFFUSE, None),
-    (DIFFUSE | SURFACE, Some(DIFFUSE)),
-    (DIFFUSE | SURFACE | ABSORBING, Some(DIFFUSE | SURFACE)),
-    (DIFFUSE | SURFACE | VOLUME, Some(DIFFUSE | SURFACE)),
-    (ALL, Some(DIFFUSE | SURFACE | ABSORBING)),
-];
+/// The compiled sets with a diffuse term, in order of size, each with the one that it is tested against.
+pub const SETS: [(u8, Option<u8>); 5] = {
+    let mut sets = [(0, None); 5];
+    let (mut found, mut k) = (0, 0);
+    while k < TERM_SETS.len() {
+        if TERM_SETS[k] & DIFFUSE != 0 {
+            sets[found] = (TERM_SETS[k], tested_against(TERM_SETS[k]));
+            found += 1;
+        }
+        k += 1;
+    }
+    assert!(found == sets.len());
+    sets
+};
+
+/// The first of the largest sets with a diffuse term that a set adds terms to.
+const fn tested_against(terms: u8) -> Option<u8> {
+    let (mut best, mut k) = (None, 0);
+    while k < TERM_SETS.len() {
+        let set = TERM_SETS[k];
+        let larger = match best {
+            None => true,
+            Some(best) => set.count_ones() > u8::count_ones(best),
+        };
+        if set & DIFFUSE != 0 && set & terms == set && set != terms && larger {
+            best = Some(set);
+        }
+        k += 1;
+    }
+    best
+}
 
 /// One set of terms, fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +94,7 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<(FitOptions,
         };
         let outcome = match engine::fit(samples, &options) {
             Ok(outcome) => outcome,
-            // The smallest set tells what is wrong with the scan; a larger one that needs more samples is no candidate.
+            // The smallest set tells what is wrong with the scan; a larger one that needs more samples is left out.
             Err(FitError::TooFew(..)) if best.is_some() => continue,
             Err(error) => return Err(error),
         };
@@ -160,5 +183,25 @@ fn judge(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, small
         aicc: criteria.aicc,
         bic: criteria.bic,
         p_value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdfit_core::brdf::{ABSORBING, ALL, SURFACE, VOLUME};
+
+    use super::*;
+
+    #[test]
+    fn each_set_is_tested_against_the_largest_within() {
+        const METAL: u8 = DIFFUSE | SURFACE | ABSORBING;
+        let sets = [
+            (DIFFUSE, None),
+            (DIFFUSE | SURFACE, Some(DIFFUSE)),
+            (METAL, Some(DIFFUSE | SURFACE)),
+            (DIFFUSE | SURFACE | VOLUME, Some(DIFFUSE | SURFACE)),
+            (ALL, Some(METAL)),
+        ];
+        assert_eq!(SETS, sets);
     }
 }

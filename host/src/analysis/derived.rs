@@ -99,7 +99,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
 }
 
 fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> {
-    // The other terms are no part of the lobe.
+    // The other terms do not belong to the lobe.
     const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
     let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));
     let sample = |theta_s: f64| Sample::in_plane(theta_i, theta_s, 1.0);

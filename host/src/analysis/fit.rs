@@ -6,6 +6,7 @@ use brdfit_core::geometry::Sample;
 
 use super::choose::{self, Choice};
 use super::derived::{self, Derived};
+use super::hints::{self, Hint};
 use crate::engine::{FitOptions, Material, Outcome};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
@@ -35,6 +36,8 @@ pub struct FittedScan {
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
     pub derived: Vec<Derived>,
+    /// What a person would say of it.
+    pub hints: Vec<Hint>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
     pub elapsed: Option<Duration>,
 }
@@ -66,6 +69,7 @@ impl FittedScan {
     /// Puts together what the engine found.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
+        let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
@@ -73,7 +77,8 @@ impl FittedScan {
             about: measurement.about.clone(),
             left_out,
             angles: by_angle(&samples, &outcome.material()),
-            derived: derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty),
+            hints: hints::of_fit(measurement, options, &outcome, &derived),
+            derived,
             options: *options,
             chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,

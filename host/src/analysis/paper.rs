@@ -90,7 +90,8 @@ pub struct Range {
 pub struct Effort {
     /// Passes over the scan, with or without derivatives.
     pub evaluations: u64,
-    /// Wall time, s; the only part of a study that is not the same in every run.
+    /// Wall time, s: the only part of a study that is not the same in every run, so it is no part of JSON.
+    #[serde(skip)]
     pub elapsed_s: f64,
 }
 

@@ -1,44 +1,40 @@
 //! `brdfit batch`: many scans, of which each is fitted once, whatever happens.
 
-mod journal;
 mod list;
-pub(super) mod own;
 #[cfg(feature = "parquet")]
 mod parquet;
-pub(super) mod record;
 pub(super) mod results;
 mod run;
-pub(super) mod shard;
 mod summary;
 
 use std::io::{self, Seek, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::engine::FitOptions;
 use crate::engine::simd::Simd;
+use crate::engine::{FitOptions, Until};
 use crate::error::Error;
 use crate::input::{ReadOptions, STDIN};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output;
+use crate::records::journal::{self, Journal};
+use crate::records::record::{self, Head, Record};
+use crate::records::shard::Shard;
 use crate::result::cell::Kind;
 use crate::streams::{Ended, Streams};
 use crate::target::{self, Target};
-use journal::Journal;
-use record::{Head, Record};
 use results::Form;
-use shard::Shard;
 use summary::Summary;
 
 /// Fits many scans; keeps what is done when interrupted
 #[derive(Args, Debug)]
 #[command(
-    after_help = "A scan that can not be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
+    after_help = "A scan that cannot be fitted has a row that says why, and the exit code is 1.\nAfter Ctrl-C what is finished is kept, and the exit code is 130; --resume goes on.\nWith --shard 2/4, OUT.2-of-4 is written, and `brdfit merge --out OUT` makes one result of all parts.\n\nExample:\n  brdfit batch scans/ --out results.csv\n  brdfit batch 'scans/**/*.csv' @more.txt --method paper --out results.json --resume"
 )]
 pub struct Arguments {
     /// Scans, folders of scans, patterns in quotes, or @LIST, a file of names (@- is standard input)
@@ -77,9 +73,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let options = arguments.search.fit_options()?;
     arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
+    // Lists of names are inputs too.
+    let lists = arguments.scans.iter().map(|scan| list::name(scan).unwrap_or(scan));
+    let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).chain(lists).collect();
     let target = match arguments.shard {
-        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &files)?),
-        None => output::target(Some(out), &files)?,
+        Some(shard) => Some(Target::new(&record::shard_path(out, shard), &inputs)?),
+        None => output::target(Some(out), &inputs)?,
     };
     let models = vec![options.model];
     let head = Head {
@@ -98,7 +97,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         Some(folder) => folder.path().join("partial"),
         None => record::partial_path(out, shard),
     };
-    if target::is_one_of(&kept_in, &files) {
+    if target::is_one_of(&kept_in, &inputs) {
         return Err(Error::new("this is a scan, and here finished fits are to be kept")
             .in_file(kept_in.display().to_string())
             .help("give --out another name"));
@@ -111,7 +110,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         // If standard error is closed, the results are right all the same.
         let _ = writeln!(
             streams.errors,
-            "{}:{line}: this is no whole record; the fit that it may have been of is made again",
+            "{}:{line}: this record is not whole; its fit is made again",
             journal.path.display()
         );
     }
@@ -119,7 +118,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let interrupt = interrupt::keeping();
     let job = run::Job {
         files: &files,
-        options,
+        options: FitOptions {
+            until: Until::set(interrupt),
+            ..options
+        },
         models,
         read: &arguments.read,
         rows: head.rows,

@@ -15,6 +15,7 @@ use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits models of other lobes beside that of the paper, and tells which the scan needs
@@ -42,7 +43,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown model, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown model, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let models = models(arguments.models.as_deref())?;
     let inputs = std::slice::from_ref(&arguments.scan);
@@ -70,13 +71,13 @@ pub fn models(list: Option<&str>) -> Result<Vec<&'static Model>, Error> {
 }
 
 /// A model's fit.
-struct Fitted {
+struct Judged {
     outcome: Outcome,
     criteria: Criteria,
 }
 
 /// Fits each model, on all threads.
-fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Fitted>, Error> {
+fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> Result<Vec<Judged>, Error> {
     use rayon::prelude::*;
     let samples = &measurement.samples;
     let fits: Vec<_> = models
@@ -88,7 +89,7 @@ fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> R
             };
             let outcome = engine::fit(samples, &options)?;
             let criteria = criteria(samples, &options, outcome.cost);
-            Ok(Fitted { outcome, criteria })
+            Ok(Judged { outcome, criteria })
         })
         .collect();
     let each = fits.into_iter();
@@ -96,17 +97,17 @@ fn compare(models: &[&'static Model], measurement: &Measurement, seed: u64) -> R
         .collect()
 }
 
-fn least_aicc(fits: &[Fitted]) -> f64 {
+fn least_aicc(fits: &[Judged]) -> f64 {
     fits.iter().map(|fit| fit.criteria.aicc).fold(f64::INFINITY, f64::min)
 }
 
-fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn text(measurement: &Measurement, fits: &[Judged]) -> String {
     let least = least_aicc(fits);
     let mut lines = vec![
         format!("{}: {} samples", measurement.label(), measurement.samples.len()),
         "  model                   P        MSE^2  rms ln    AICc  minima  parameters".to_string(),
     ];
-    for Fitted { outcome, criteria } in fits {
+    for Judged { outcome, criteria } in fits {
         let values = outcome.model.named(&outcome.params);
         let values: Vec<_> = values.map(|(name, value)| format!("{name} {}", four(value))).collect();
         let mark = if criteria.aicc == least { '*' } else { ' ' };
@@ -125,10 +126,10 @@ fn text(measurement: &Measurement, fits: &[Fitted]) -> String {
     lines.join("\n") + "\n"
 }
 
-fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn json(measurement: &Measurement, fits: &[Judged]) -> String {
     let models: Vec<_> = fits
         .iter()
-        .map(|Fitted { outcome, criteria }| {
+        .map(|Judged { outcome, criteria }| {
             json!({
                 "model": outcome.model.name,
                 "mse2": outcome.mse2,
@@ -140,11 +141,11 @@ fn json(measurement: &Measurement, fits: &[Fitted]) -> String {
             })
         })
         .collect();
-    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models });
+    let value = json!({ "scan": measurement.label(), "samples": measurement.samples.len(), "models": models, "provenance": provenance(&measurement.about, None) });
     output::json(&value)
 }
 
-fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
+fn picture(measurement: &Measurement, fits: &[Judged]) -> String {
     let mut best_first: Vec<&Outcome> = fits.iter().map(|fit| &fit.outcome).collect();
     best_first.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     let lines: Vec<_> = best_first
@@ -154,5 +155,5 @@ fn picture(measurement: &Measurement, fits: &[Fitted]) -> String {
             ln_f: plot::of(&outcome.material()),
         })
         .collect();
-    plot::overlay_svg(&measurement.label(), &measurement.samples, &lines)
+    plot::overlay_svg(&measurement.label(), &plot::Drawn::of_scan(measurement).data(), &lines)
 }

@@ -8,15 +8,16 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::ProgressBar;
 
-use crate::analysis::converge::{METHODS, study};
+use crate::analysis::converge::{METHODS, MethodStudy, ScanStudy, study};
 use crate::analysis::paper_sets::{Subject, paper_scans};
-use crate::engine::FitOptions;
+use crate::engine::{FitOptions, Method, Precision};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::all_parameters;
 use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::parameters::model;
 use crate::plot::{self, picture};
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 use crate::terms::terms;
 
@@ -96,15 +97,42 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     bar.finish_and_clear();
     let text = match arguments.output.format {
         TableFormat::Text => write::text(&studies, arguments.seeds),
-        TableFormat::Json => write::json(&studies, arguments.seeds),
+        TableFormat::Json => {
+            let read = measurement.as_ref().map(|read| provenance(&read.about, None));
+            write::json(&studies, arguments.seeds, read)
+        }
         TableFormat::Csv => write::csv(&studies),
     };
     if let Some(picture) = &picture {
-        picture::save(picture, &plot::converge_svg(&studies, arguments.seeds))?;
+        picture::save(picture, &plot::converge_svg(&panels(&studies), arguments.seeds))?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
+}
+
+/// One panel a scan: colours are those of the methods, and single precision has dashes.
+fn panels(studies: &[ScanStudy]) -> Vec<plot::ConvergePanel> {
+    let line = |method: &MethodStudy, &(by, precision): &(Method, Precision)| plot::ConvergeLine {
+        label: format!("{} {}", method.method, method.precision),
+        colour: usize::from(by == Method::Paper),
+        dashed: precision == Precision::F32,
+        points: method
+            .by_time
+            .iter()
+            .map(|point| (point.at, [point.excess.p10, point.excess.median, point.excess.p90]))
+            .collect(),
+    };
+    let panel = |scan: &ScanStudy| plot::ConvergePanel {
+        title: scan.name.clone(),
+        lines: scan
+            .methods
+            .iter()
+            .zip(&METHODS)
+            .map(|(study, method)| line(study, method))
+            .collect(),
+    };
+    studies.iter().map(panel).collect()
 }
 
 fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {

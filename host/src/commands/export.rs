@@ -112,7 +112,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Form::Bird => bird::write(&model),
         Form::Openmaterial => {
             let wavelength = arguments.wavelength.or(model.wavelength).ok_or_else(|| {
-                Error::new("an OpenMATERIAL BRDF has a wavelength, and the scan's name tells none")
+                Error::new("an OpenMATERIAL BRDF has a wavelength, and the name of the scan does not tell it")
                     .help("give --wavelength in nm")
             })?;
             openmaterial::write(&model, wavelength)

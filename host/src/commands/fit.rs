@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use crate::analysis::fit::{FittedScan, fit};
-use crate::engine::{FitOptions, Material, Method};
+use crate::engine::{FitOptions, Material, Method, Until};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::interrupt;
@@ -35,6 +35,9 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
+    /// Adds the time of each search to JSON and CSV, which are then not the same in each run
+    #[arg(long)]
+    time: bool,
     /// Draws the scan with its distinct minima, as SVG, or as PNG if brdfit is built with it; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
@@ -57,7 +60,12 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let bar = progress(streams.progress, &options, measurements.len());
     // Of one scan nothing is finished before all is.
     let several = measurements.len() > 1;
-    let interrupted = || several && interrupt::keeping().load(Ordering::Relaxed);
+    let interrupt = several.then(interrupt::keeping);
+    let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
+    let options = FitOptions {
+        until: interrupt.map_or_else(Until::default, Until::set),
+        ..options
+    };
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {
@@ -66,12 +74,15 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
             }
             let report = fit(measurement, &options);
             bar.inc(1);
-            Some(report)
+            Some(report).filter(|report| report.is_ok() || !interrupted())
         })
         .collect()
     });
     bar.finish_and_clear();
-    let reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    let mut reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
+    if arguments.output.format != TableFormat::Text && !arguments.time {
+        reports.iter_mut().for_each(|report| report.elapsed = None);
+    }
     let missing = measurements.len() - reports.len();
     let ended = match missing {
         0 => Ended::default(),
@@ -101,7 +112,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         let curves: Vec<_> = minima.map(|minimum| material(minimum.params)).collect();
         picture::save(
             picture,
-            &plot::scan_svg(&measurement.label(), &measurement.samples, &curves),
+            &plot::scan_svg(
+                &measurement.label(),
+                &plot::Drawn::of_fit(measurement, &report.outcome).data(),
+                &curves,
+            ),
         )?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;

@@ -10,10 +10,12 @@ use serde_json::{Value, json};
 use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
+use crate::number::{four, two};
 use crate::options::SearchArguments;
-use crate::output::{self, Format, OutputArguments, deliver, shortest};
+use crate::output::{self, Format, OutputArguments, deliver};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
+use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
@@ -37,7 +39,7 @@ pub struct Arguments {
 /// Runs the subcommand.
 ///
 /// # Errors
-/// An unknown parameter, too few or too many scans, a scan that can not be read or fitted, or an output that can not be written.
+/// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let options = arguments.search.fit_options()?;
     let shared = shared(options.model, &arguments.share)?;
@@ -45,7 +47,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
         return Err(
-            Error::new(format!("{} scans can not be fitted together", measurements.len()))
+            Error::new(format!("{} scans cannot be fitted together", measurements.len()))
                 .help(format!("give 2 to {SCANS} scans")),
         );
     }
@@ -76,8 +78,8 @@ fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
     let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
     let names: Vec<&str> = present(true).map(name).collect();
     let value = |scan: usize, k: usize| match fitted.errors[scan][k] {
-        Some(error) => format!("{} ± {}", digits(fitted.scans[scan][k], 4), digits(error, 2)),
-        None => digits(fitted.scans[scan][k], 4),
+        Some(error) => format!("{} ± {}", four(fitted.scans[scan][k]), two(error)),
+        None => four(fitted.scans[scan][k]),
     };
     let mut lines = vec![format!(
         "{} scans, {} samples, {} parameters; shared: {}",
@@ -105,11 +107,6 @@ fn text(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
     lines.join("\n") + "\n"
 }
 
-fn digits(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
-    shortest(rounded)
-}
-
 fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> String {
     let model = options.model;
     let shared: Vec<&str> = (0..fitted.shared.len())
@@ -124,6 +121,7 @@ fn json(options: &FitOptions, measurements: &[Measurement], fitted: &Fitted) -> 
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
+                "provenance": provenance(&measurement.about, Some(options)),
             })
         })
         .collect();

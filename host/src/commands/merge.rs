@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::batch::own;
-use super::batch::record::{self, Head, Record};
 use super::batch::results::Form;
-use super::batch::shard::Shard;
 use crate::error::Error;
 use crate::output;
+use crate::records::own;
+use crate::records::record::{self, Head, Record};
+use crate::records::shard::Shard;
 use crate::streams::{Ended, Streams};
 
 /// Makes one result of the parts of a batch
@@ -34,7 +34,7 @@ pub struct Arguments {
 /// Runs the subcommand; the result says how the batch went.
 ///
 /// # Errors
-/// The parts are not those of one whole batch, or the result can not be written.
+/// The parts are not those of one whole batch, or the result cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let out = arguments.out.as_path();
     let form = Form::of(out, arguments.format)?;
@@ -149,7 +149,7 @@ impl Part {
         let read = |error: std::io::Error| fail(format!("cannot be read: {error}"));
         let mut lines = BufReader::new(File::open(&path).map_err(read)?);
         let head = record::head(&mut lines).map_err(read)?;
-        let (head, _) = head.ok_or_else(|| fail("this is no part of a batch".into()))?;
+        let (head, _) = head.ok_or_else(|| fail("this is not a part of a batch".into()))?;
         Ok(Part { path, head, lines })
     }
 

@@ -11,7 +11,8 @@ use rayon::prelude::*;
 
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose;
-use crate::analysis::profile::{Profile, profile};
+use crate::analysis::profile::calibrate::{LEVELS, threshold};
+use crate::analysis::profile::{End, Profile, profile};
 use crate::engine::{FitError, FitOptions, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
@@ -94,18 +95,40 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         profiles,
         copies,
         calibrated: arguments.calibrate.unwrap_or(0),
-        seed: options.seed,
+        options,
+        about: measurement.about.clone(),
     };
     let written = match arguments.output.format {
         Format::Text => text::write(&findings),
         Format::Json => json::write(&findings),
     };
     if let Some(picture) = &picture {
-        picture::save(picture, &plot::profile_svg(&findings.name, &findings.profiles))?;
+        picture::save(
+            picture,
+            &plot::profile_svg(&findings.name, &findings.profiles.iter().map(panel).collect::<Vec<_>>()),
+        )?;
     }
     deliver(written.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&[measurement], streams.errors);
     Ok(())
+}
+
+/// A profile as it is drawn.
+fn panel(profile: &Profile) -> plot::ProfilePanel {
+    let end = |end: End| (!end.at_bound).then_some(end.value);
+    plot::ProfilePanel {
+        name: profile.name,
+        best: profile.best.value,
+        points: profile
+            .points
+            .iter()
+            .map(|point| (point.value, profile.rise(point)))
+            .collect(),
+        levels: LEVELS.map(|level| (level, threshold(level, profile.degrees_of_freedom))),
+        ends: profile
+            .intervals
+            .map(|interval| [end(interval.low), end(interval.high)]),
+    }
 }
 
 /// The places of the parameters asked for.
@@ -121,7 +144,7 @@ fn parameters(names: &[String], options: &FitOptions) -> Result<Vec<usize>, Erro
         index.ok_or_else(|| {
             let terms = term_names(options.terms).join(",");
             Error::new(format!(
-                "'{}' is no free parameter of the terms {terms}",
+                "'{}' is not a free parameter of the terms {terms}",
                 crate::error::shown(asked)
             ))
             .help(format!("the free parameters are {}", known()))

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::options::SearchArguments;
 use crate::output;
-use crate::page::provenance::{self, Source};
+use crate::page::provenance;
 use crate::page::section::Section;
 use crate::page::{html, results};
 use crate::plot::picture;
@@ -46,7 +46,6 @@ pub struct Arguments {
 #[derive(Clone)]
 struct Subject {
     measurement: Measurement,
-    source: Source,
     /// What its results say.
     stored: Option<Material>,
 }
@@ -76,19 +75,13 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     }
     let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| {
         let each = subjects.par_iter();
-        each.map(
-            |Subject {
-                 measurement,
-                 source,
-                 stored,
-             }| {
-                let section = Section::new(measurement, source, &options)?;
-                if let Some(stored) = stored {
-                    results::agree(&section.label, &section.report.outcome.material(), stored)?;
-                }
-                Ok(section)
-            },
-        )
+        each.map(|Subject { measurement, stored }| {
+            let section = Section::new(measurement, &options)?;
+            if let Some(stored) = stored {
+                results::agree(&section.label, &section.fit.outcome.material(), stored)?;
+            }
+            Ok(section)
+        })
         .collect()
     });
     let sections: Vec<Section> = sections.into_iter().collect::<Result<_, _>>()?;
@@ -105,10 +98,8 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
 
 /// The scans in the bytes of a file.
 fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>, Error> {
-    let source = Source::new(bytes);
     let subject = |measurement| Subject {
         measurement,
-        source: source.clone(),
         stored: None,
     };
     Ok(input::parse(name, bytes, options)?.into_iter().map(subject).collect())
@@ -117,7 +108,7 @@ fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>
 /// The scans that results name; those without a fit are left out, and standard error is told.
 fn of_results(
     name: &str,
-    fitted: Vec<results::Fitted>,
+    fitted: Vec<results::StoredFit>,
     arguments: &Arguments,
     streams: &mut Streams,
 ) -> Result<Vec<Subject>, Error> {
@@ -137,9 +128,9 @@ fn of_results(
         let all = match files.entry(one.file) {
             Entry::Occupied(read) => read.into_mut(),
             Entry::Vacant(place) => {
-                // What a file of results says is no word of the user's, and a pipe would be waited for.
+                // A file of results may name anything; reading a pipe would wait for ever.
                 if place.key().metadata().is_ok_and(|there| !there.is_file()) {
-                    return Err(Error::new("this is no file")
+                    return Err(Error::new("this is not a file")
                         .in_file(file)
                         .help(format!("{name} names it; give the results of scans in files")));
                 }

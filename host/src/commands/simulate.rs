@@ -11,8 +11,9 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use crate::engine::Material;
 use crate::error::{Error, shown};
 use crate::input::azimuth;
+use crate::number::shortest;
 use crate::options::fixed;
-use crate::output::{deliver, shortest, target};
+use crate::output::{deliver, target};
 use crate::parameters;
 use crate::streams::Streams;
 use crate::target::NO_INPUTS;
@@ -181,7 +182,7 @@ fn noise_factor(arguments: &Arguments, noise: &mut Xoshiro256PlusPlus) -> f64 {
 
 /// The BRDF times `factor`, or ln of it, at theta_i, theta_s and Delta phi in degrees.
 fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Result<f64, Error> {
-    // Below this the exponential is no normal number.
+    // Below this the exponential is not a normal number.
     const LEAST_LN: f64 = -708.0;
     let [angle_i, angle_s, phi] = degrees;
     let at = format!("theta_i = {}, theta_s = {}", shortest(angle_i), shortest(angle_s));

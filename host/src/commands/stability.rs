@@ -5,18 +5,20 @@ mod text;
 use std::path::PathBuf;
 
 use clap::Args;
+use serde::Serialize;
 
-use crate::analysis::stability::assess::assess;
+use crate::analysis::stability::assess::{Assessment, assess};
 use crate::analysis::stability::built_in;
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::output::{Format, OutputArguments, deliver, json};
 use crate::parameters::model;
+use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;
 use crate::terms::terms;
 
-/// Tells what rounding does to a scan's fit, or to built-in stiff and extreme cases
+/// Shows what rounding does to the fit of a scan, or to built-in stiff and extreme cases
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  brdfit stability paint.csv")]
 pub struct Arguments {
@@ -35,10 +37,18 @@ pub struct Arguments {
     read: ReadOptions,
 }
 
+/// The assessment of a scan, and where that is from.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    assessment: &'a Assessment,
+    provenance: Provenance<'a>,
+}
+
 /// Runs the subcommand.
 ///
 /// # Errors
-/// The scan can not be read or fitted, or the output not written.
+/// The scan cannot be read or fitted, or the output not written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let target = arguments.output.target(arguments.scan.as_slice())?;
     let text = match &arguments.scan {
@@ -57,11 +67,16 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             };
             let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;
-            left_out::note(&[measurement], streams.errors);
-            match arguments.output.format {
+            let provenance = provenance(&measurement.about, None);
+            let text = match arguments.output.format {
                 Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
-                Format::Json => json(&case),
-            }
+                Format::Json => json(&Document {
+                    assessment: &case,
+                    provenance,
+                }),
+            };
+            left_out::note(std::slice::from_ref(&measurement), streams.errors);
+            text
         }
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)

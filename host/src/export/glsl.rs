@@ -5,7 +5,7 @@ use brdfit_core::brdf::NAMES;
 use super::model::Model;
 use crate::engine::FitOptions;
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 
 /// Eq. 14 in vectors; the tangential parts give the half angles without cancellation.
 const SHADER: &str = "\

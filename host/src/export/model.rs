@@ -43,7 +43,7 @@ impl Model {
     /// From a result of `brdfit fit --format json`, of which `index` (from 1) chooses one if there are several.
     ///
     /// # Errors
-    /// It is none, there are several and none is chosen, or its parameters have no BRDF.
+    /// It is not such a result, there are several and none is chosen, or its parameters have no BRDF.
     pub fn of_json(bytes: &[u8], index: Option<usize>) -> Result<Model, Error> {
         let none = |what: &str| Error::new(what).help("give what brdfit fit --format json has written");
         let all: Value =
@@ -119,7 +119,7 @@ impl Model {
     /// It is another model.
     pub fn eq_14(&self, form: &str) -> Result<Params<f64>, Error> {
         self.material.eq_14().ok_or_else(|| {
-            Error::new(format!("{form} can not hold the model {}", self.material.model.name))
+            Error::new(format!("{form} cannot hold the model {}", self.material.model.name))
                 .help("--to zemax and --to bird take any model; or fit --model beckmann")
         })
     }

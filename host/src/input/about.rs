@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::facts;
 use super::options::ReadOptions;
 use super::raw::RawScan;
+use super::source::Source;
 use super::units::Angles;
 use crate::error::Error;
 use crate::plain::some_of;
@@ -20,6 +21,10 @@ pub struct About {
     pub unused: Vec<String>,
     /// Where the angle of incidence is from.
     pub theta_i: ThetaI,
+    /// True if the file has one angle of incidence, which no column gives.
+    pub one_angle: bool,
+    /// True if the program wrote the file, so that there is no doubt about it.
+    pub settled: bool,
     /// True if a name or an option gives the unit of the angles.
     pub angles_named: bool,
     /// What the values are divided by before they are what their name says: 100 for percent.
@@ -28,6 +33,12 @@ pub struct About {
     pub sigma_ln: Option<f64>,
     /// What was done to the numbers, such as angles of a full turn that became negative.
     pub notes: Vec<String>,
+    /// What may be wrong with the file; this is among the notes too.
+    pub doubts: Vec<String>,
+    /// The files of the scan, in order.
+    pub sources: Vec<Source>,
+    /// What the user said about them.
+    pub asked: ReadOptions,
 }
 
 impl About {
@@ -44,10 +55,15 @@ impl Default for About {
             columns: Vec::new(),
             unused: Vec::new(),
             theta_i: ThetaI::Column,
+            one_angle: false,
+            settled: false,
             angles_named: true,
             divisor: 1.0,
             sigma_ln: None,
             notes: Vec::new(),
+            doubts: Vec::new(),
+            sources: Vec::new(),
+            asked: ReadOptions::default(),
         }
     }
 }
@@ -118,6 +134,7 @@ pub fn give_theta_i(file: &str, scan: &mut RawScan, options: &ReadOptions) -> Re
     };
     scan.rows.iter_mut().for_each(|row| row.theta_i = angle);
     scan.about.theta_i = ThetaI::Column;
+    scan.about.one_angle = true;
     scan.about
         .notes
         .push(format!("theta_i is {degrees} degrees, from {from}"));

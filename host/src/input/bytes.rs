@@ -27,7 +27,7 @@ pub fn of_file(path: &Path) -> Result<Vec<u8>, Error> {
     }
     fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => fail("no such file".into()).help("check the name and the folder"),
-        _ => fail(format!("can not be read: {error}")).help("check its permissions"),
+        _ => fail(format!("cannot be read: {error}")).help("check its permissions"),
     })
 }
 
@@ -51,7 +51,7 @@ pub fn of_stdin(stream: &mut dyn Read) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     match stream.read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(Error::new(format!("can not be read: {error}")).in_file(STDIN)),
+        Err(error) => Err(Error::new(format!("cannot be read: {error}")).in_file(STDIN)),
     }
 }
 

@@ -13,6 +13,7 @@ use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight;
 use crate::error::Error;
+use crate::number::shortest;
 
 /// The measurement in a scan of `file`.
 ///
@@ -47,6 +48,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
             Seen::Invalid { what, column } => {
                 counts.add(Reason::NotValid, degrees(row, &read_as));
                 faults.add(row.line, column, what);
+                faults.near_retro += usize::from(is_near_retro(row, &read_as));
             }
         }
     }
@@ -57,7 +59,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         return Err(Error::new(format!("none of the {count} rows is a valid sample"))
             .help("check the columns, units and masks"));
     }
-    if options.forward.is_none() && scan.about.kind != Kind::Own {
+    if options.forward.is_none() && scan.about.kind != Kind::Own && !scan.about.settled {
         side::refuse(&samples)?;
     }
     let sigma_ln = weights.normalise(&mut samples).or(scan.about.sigma_ln);
@@ -125,7 +127,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
         if !angle.is_finite() {
-            return invalid(column, format!("{name} is {angle}, which is no angle"));
+            return invalid(column, format!("{name} is {}, which is not an angle", shortest(angle)));
         }
     }
     let mut sample = Sample {
@@ -151,7 +153,10 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
                 Angles::Deg => "degrees",
                 Angles::Rad => "radians",
             };
-            return invalid(column, format!("{name} is {angle} {unit}, at or beyond the horizon"));
+            return invalid(
+                column,
+                format!("{name} is {} {unit}, at or beyond the horizon", shortest(angle)),
+            );
         }
     }
     sample.brdf = match read_as.quantity.brdf(row.value / divisor, sample.theta_s) {
@@ -192,6 +197,25 @@ fn masked(sample: &Sample<f64>, value: f64, options: &ReadOptions) -> Option<Rea
     None
 }
 
+/// Is a row within 8 degrees of the direction of incidence?
+fn is_near_retro(row: &Row, read_as: &ReadAs) -> bool {
+    let sign = if read_as.forward == Forward::Negative {
+        -1.0
+    } else {
+        1.0
+    };
+    let delta_phi = row.delta_phi.map_or(f64::PI, |phi| read_as.angles.azimuth(phi));
+    let sample = Sample {
+        delta_phi,
+        ..Sample::in_plane(
+            read_as.angles.radians(row.theta_i),
+            sign * read_as.angles.radians(row.theta_s),
+            0.0,
+        )
+    };
+    from_retro(&sample) <= Real::sin_cos(8f64.to_radians() / 2.0).0
+}
+
 /// Sine of half the angle between the directions of incidence and of scattering.
 fn from_retro(sample: &Sample<f64>) -> f64 {
     let half = |angle: f64| Real::sin_cos(angle / 2.0).0;
@@ -210,7 +234,12 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     let sigma = match known {
         Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
         Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
-        Weight::Factor(factor) => return Err(format!("the weight is {factor}, which is none")),
+        Weight::Factor(factor) => {
+            return Err(format!(
+                "the weight is {}, and must be a number from 0 on",
+                shortest(factor)
+            ));
+        }
         Weight::RelativeSigma(sigma) => sigma,
         Weight::Sigma(sigma) => match quantity.is_logarithm() {
             Some(factor) => sigma * factor,
@@ -221,7 +250,10 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     if sigma >= 0.0 && whole >= f64::MIN_POSITIVE && whole.is_finite() {
         Ok((1.0 / whole, weight::Source::Sigma))
     } else {
-        let what = format!("the relative standard deviation is {sigma}, which gives no weight");
+        let what = format!(
+            "the relative standard deviation is {}, which gives no weight",
+            shortest(sigma)
+        );
         Err(what + " (--sigma-floor 0.01 or --weights equal would)")
     }
 }
@@ -230,6 +262,8 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
 #[derive(Default)]
 struct Faults {
     count: usize,
+    /// How many are close to the direction of incidence, where a detector blocks the beam.
+    near_retro: usize,
     first: Option<(u64, Option<u64>, String)>,
     lines: Vec<String>,
 }
@@ -254,7 +288,12 @@ impl Faults {
             let lines = self.lines.join(", ");
             what += &format!(" ({} rows are not valid, on lines {lines}{more})", self.count);
         }
-        let error = Error::new(what).help("use --drop-invalid to leave such rows out");
+        let help = if 2 * self.near_retro > self.count {
+            "most are where a detector blocks the incident beam: use --mask-retro 6, or --drop-invalid to leave such rows out"
+        } else {
+            "use --drop-invalid to leave such rows out"
+        };
+        let error = Error::new(what).help(help);
         at_line(Error { column, ..error }, line)
     }
 }

@@ -9,6 +9,7 @@ use super::uncertainty::{self, WeightKind};
 use super::unit::Unit;
 use super::units::{Angles, Quantity, ValueUnit};
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// Where the columns of a scan are, counted from 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +32,8 @@ pub struct Columns {
     pub splits: Vec<usize>,
     /// Unit of the value in the row.
     pub unit: Option<usize>,
+    /// The standard deviation of ln f that a weight of 1 stands for, which the program writes beside weights.
+    pub sigma_ln: Option<usize>,
     /// The columns of values, each a scan of its own; at least one.
     pub values: Vec<Value>,
     /// Columns that are not used, with what they look like.
@@ -120,6 +123,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     let wavelength = finder.one("the wavelength", Role::Wavelength)?;
     let polarisation = finder.one("the polarisation", Role::Polarisation)?;
     let unit = finder.one("the unit", Role::Unit)?;
+    let sigma_ln = finder.one("the unit of weights", Role::SigmaLn)?;
     splits.extend(finder.one("the sample", Role::Sample)?);
     for &place in splits.iter().chain(&ignored) {
         finder.taken[place] = true;
@@ -160,7 +164,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     for place in uncertainty::assign(&heads, &taken, &mut values, options)? {
         taken[place] = true;
     }
-    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit];
+    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit, sigma_ln];
     let used: Vec<usize> = used.into_iter().flatten().collect();
     let unused = (0..heads.len()).filter(|&k| ignored.contains(&k) || !taken[k] && !used.contains(&k));
     let unused: Vec<(usize, Role)> = unused
@@ -177,6 +181,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
         polarisation,
         splits,
         unit,
+        sigma_ln,
         values,
         unused,
         heads,
@@ -202,7 +207,19 @@ impl Finder<'_> {
                 names.join(" and ")
             ))
             .at_column(second as u64 + 1)
-            .help(format!("leave one out with --ignore, such as --ignore {}", second + 1)));
+            .help(match role {
+                Role::ThetaS => format!(
+                    "say what each is, such as --columns theta_i={},theta_s={}, or leave one out with --ignore",
+                    first + 1,
+                    second + 1
+                ),
+                Role::PhiS => format!(
+                    "say what each is, such as --columns phi_i={},phi_s={}, or leave one out with --ignore",
+                    first + 1,
+                    second + 1
+                ),
+                _ => format!("leave one out with --ignore, such as --ignore {}", second + 1),
+            }));
         }
         if let Some(first) = first {
             self.taken[first] = true;
@@ -277,7 +294,15 @@ impl Finder<'_> {
     fn missing(&self, quantity: &str) -> Error {
         let found: Vec<String> = self.heads.iter().map(|head| shown(&head.text)).collect();
         let name = quantity.trim_end_matches("_deg").trim_end_matches("_per_sr");
-        Error::new(format!("no column {quantity} among the columns {}", found.join(", "))).help(format!(
+        let foreign = self.heads.iter().find(|head| head.unit == Some(Unit::Foreign));
+        let foreign = foreign.filter(|_| name == "brdf");
+        let foreign = foreign.map_or(String::new(), |head| {
+            format!(
+                "; '{}' is not in sr^-1, so it is no BRDF before it is calibrated",
+                shown(&head.text)
+            )
+        });
+        Error::new(format!("no column {quantity} among the columns {}{foreign}", some_of(&found))).help(format!(
             "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
         ))
     }
@@ -422,6 +447,8 @@ mod tests {
             ("aoi,theta_s,brdf,std", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,brdf std [1/sr]", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,standard deviation of BRDF", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,±", WeightKind::Sigma(1.0)),
+            ("aoi,theta_s,brdf,delta_BRDF", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,ln_brdf,weight", WeightKind::Factor),
         ] {
             assert_eq!(find(header).unwrap().values[0].weight, Some((3, kind)), "{header}");
@@ -469,7 +496,13 @@ mod tests {
             "{error}"
         );
         let error = find("theta_i,theta_s,theta_r,brdf").unwrap_err();
-        assert_eq!(error.column, Some(3));
+        assert!(error.column == Some(3) && error.to_string().contains("--columns theta_i=2,theta_s=3"));
+        assert!(
+            find("theta_i,theta_s,signal (mV)")
+                .unwrap_err()
+                .to_string()
+                .contains("'signal (mV)' is not in sr^-1")
+        );
         assert!(find("theta_i_rad,theta_s_deg,brdf").is_err());
         assert!(find("theta_i,theta_s,raa,phi_s,brdf").is_err());
     }

@@ -4,6 +4,7 @@ use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
 use crate::error::Error;
+use crate::number::shortest;
 
 /// Half a right angle in radians is less than this, and no scan in degrees is so narrow without a reason.
 const RIGHT_ANGLE: f64 = 1.6;
@@ -19,6 +20,9 @@ const FEW: usize = 8;
 /// # Errors
 /// Angles in another unit, azimuths in place of scattering angles, values in percent or in no unit of a BRDF; each with the option that settles it.
 pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
+    if scan.about.settled {
+        return Ok(());
+    }
     let unit = options.angles.unwrap_or(scan.angles);
     if options.angles.is_none() {
         unit_of_angles(scan, unit)?;
@@ -48,7 +52,8 @@ fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
     };
     match unit {
         Angles::Deg if scan.rows.len() > 2 && polar > 0.0 && polar <= RIGHT_ANGLE => Err(at(Error::new(format!(
-            "all angles are within {polar} degrees; are they radians?"
+            "all angles are within {} degrees; are they radians?",
+            shortest(polar)
         ))
         .help("say --angles rad if they are, and --angles deg if not"))),
         Angles::Rad if polar > RIGHT_ANGLE && polar <= 180.0 => Err(at(Error::new(format!(
@@ -103,11 +108,13 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
     let low = degrees(angles().map(|row| row.theta_s).fold(f64::INFINITY, f64::min));
     let high = degrees(angles().map(|row| row.theta_s).fold(f64::NEG_INFINITY, f64::max));
     if high - low <= 180.0 {
-        return Ok(());
+        return from_the_surface(scan, low, angles().filter(|row| degrees(row.theta_s) > 90.0).count());
     }
     let beyond = |row: &&Row| degrees(row.theta_s).abs() > 90.0;
     let error = Error::new(format!(
-        "theta_s goes from {low} to {high} degrees, over more than half a turn, as azimuths do"
+        "theta_s goes from {} to {} degrees, over more than half a turn, as azimuths do",
+        shortest(low),
+        shortest(high)
     ))
     .help("if these are azimuths, name the columns with --columns phi_s=...,theta_s=...; if they are of light that goes through the sample too, leave its rows out of the file");
     let line = angles().find(beyond).map_or(0, |row| row.line);
@@ -116,6 +123,22 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
         ..error
     };
     Err(if line > 0 { error.at_line(line) } else { error })
+}
+
+/// Refuses scattering angles that begin at 0 and of which many are beyond the normal: they are counted from the surface.
+fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error> {
+    if low < 0.0 || 4 * beyond < scan.rows.len() {
+        return Ok(());
+    }
+    let error = Error::new(format!(
+        "theta_s begins at {low} degrees and {beyond} of {} rows are beyond 90: is it counted from the surface?",
+        scan.rows.len()
+    ))
+    .help("theta_s is counted from the normal, negative on the side of incidence: subtract 90 degrees if so");
+    Err(Error {
+        column: scan.places.theta_s,
+        ..error
+    })
 }
 
 /// Refuses values which, over a wide range of angles, are all brighter than any surface.

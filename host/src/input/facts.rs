@@ -6,6 +6,7 @@ use super::rows;
 use super::unit::Unit;
 use super::wavelength;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// What the remarks of a file say.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,15 +19,19 @@ pub struct Facts {
     pub polarisation: Option<String>,
     /// Name of the scan, as the program writes it.
     pub scan: Option<String>,
-    /// The standard deviation of ln f that a weight of 1 stands for, as the program writes it.
-    pub sigma_ln: Option<f64>,
+    /// True if the program wrote the file.
+    pub own: bool,
 }
+
+/// The first line of tables that the program writes.
+pub const OWN: &str = "# written by brdfit inspect: units and signs are settled";
 
 impl Facts {
     /// What the remarks say; each is a line with its number.
     pub fn of<'a>(remarks: impl Iterator<Item = (u64, &'a str)>) -> Facts {
         let mut facts = Facts::default();
         for (line, remark) in remarks {
+            facts.own |= remark.trim_end() == OWN;
             for (key, value) in pairs(remark) {
                 facts.add(line, key, value);
             }
@@ -36,10 +41,8 @@ impl Facts {
 
     fn add(&mut self, line: u64, key: &str, value: &str) {
         let head = Head::new(key);
-        match head.plain.as_str() {
-            "scan" => self.scan = Some(value.to_string()),
-            "sigmaln" => self.sigma_ln = value.parse().ok(),
-            _ => {}
+        if head.plain == "scan" {
+            self.scan = Some(value.to_string());
         }
         match role::role(&head) {
             Role::ThetaI => {
@@ -197,7 +200,7 @@ pub fn missing_theta_i(names: &[String]) -> Error {
     let among = if named.is_empty() {
         String::new()
     } else {
-        format!(" among the columns {}", named.join(", "))
+        format!(" among the columns {}", some_of(&named))
     };
     Error::new(format!(
         "no column theta_i_deg{among}, and neither a remark nor the name of the file gives the angle of incidence"

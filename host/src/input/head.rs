@@ -58,7 +58,13 @@ impl Head {
                 name = before.to_string();
             }
         }
-        if head.unit.is_none() {
+        if head.unit.is_none()
+            && let Some(unit @ Unit::Length(..=1e3)) = Unit::parse(&name)
+            && name.trim().chars().count() > 1
+        {
+            // A column called `nm` holds wavelengths.
+            head.unit = Some(unit);
+        } else if head.unit.is_none() {
             let (short, unit) = Unit::at_end(&name);
             head.unit = unit;
             name = short.to_string();
@@ -91,6 +97,9 @@ fn coverage(text: &str) -> Option<f64> {
 
 /// A name without what people write differently: case, spaces, punctuation, a unit at the end; Greek letters are spelt.
 pub fn plain(name: &str) -> String {
+    if ["+-", "+/-"].contains(&name.trim()) {
+        return "sigma".to_string();
+    }
     let name = Unit::at_end(name).0;
     let mut plain = String::with_capacity(name.len());
     let mut letters = name.chars().flat_map(char::to_lowercase).peekable();
@@ -101,6 +110,7 @@ pub fn plain(name: &str) -> String {
             'δ' | '∆' => plain.push_str("delta"),
             'λ' => plain.push_str("lambda"),
             'σ' => plain.push_str("sigma"),
+            '±' => plain.push_str("sigma"),
             'ᵢ' => plain.push('i'),
             'ᵣ' => plain.push('r'),
             'ₛ' => plain.push('s'),
@@ -157,6 +167,11 @@ mod tests {
         assert_eq!(seen("wavelength_um").1, Some(Unit::Length(1e3)));
         assert_eq!(seen("550 nm"), ("550".to_string(), Some(Unit::Length(1.0)), None));
         assert_eq!(seen("signal (mV)").1, Some(Unit::Foreign));
+        assert_eq!(seen("nm"), ("nm".to_string(), Some(Unit::Length(1.0)), None));
+        assert_eq!(
+            (seen("±").0, seen("+/- [%]").0),
+            ("sigma".to_string(), "sigma".to_string())
+        );
         assert_eq!(seen("m"), ("m".to_string(), None, None));
         assert_eq!(seen("brdf_m").1, None);
     }

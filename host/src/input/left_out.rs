@@ -6,6 +6,7 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::Measurement;
+use crate::number::shortest;
 
 /// Why a row was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -104,7 +105,7 @@ pub fn summary(list: &[LeftOut]) -> Option<String> {
         return None;
     }
     let reasons = list.chunk_by(|a, b| a.reason == b.reason).map(|group| {
-        let angle = |one: &LeftOut| format!("{} at {}", one.samples, (one.theta_i_deg * 1e4).round() / 1e4);
+        let angle = |one: &LeftOut| format!("{} at {}", one.samples, shortest((one.theta_i_deg * 1e4).round() / 1e4));
         let mut angles: Vec<String> = group.iter().take(LISTED).map(angle).collect();
         if group.len() > LISTED {
             angles.push("...".to_string());
@@ -121,13 +122,16 @@ pub fn summary(list: &[LeftOut]) -> Option<String> {
     Some(format!("{} {samples}: {}", total(list), reasons.join("; ")))
 }
 
-/// Says of each scan what was left out of it.
+/// Says of each scan what was left out of it, and what may be wrong with it.
 pub fn note(measurements: &[Measurement], to: &mut dyn Write) {
     for measurement in measurements {
         if let Some(summary) = summary(&measurement.left_out) {
             let (label, kept) = (measurement.label(), measurement.samples.len());
             // If even standard error is closed, the result says it too.
             let _ = writeln!(to, "{label}: kept {kept}, left out {summary}");
+        }
+        for doubt in &measurement.about.doubts {
+            let _ = writeln!(to, "{}: {doubt}", measurement.label());
         }
     }
 }

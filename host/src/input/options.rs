@@ -12,7 +12,7 @@ use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, Wavelengt
 use crate::error::Error;
 
 /// How files are read; all but `input_format` hold for each scan.
-#[derive(Args, Clone, Debug, Default, PartialEq)]
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize)]
 #[command(next_help_heading = "What the files hold")]
 pub struct ReadOptions {
     /// Format of the files [default: known by their content]

@@ -1,12 +1,16 @@
 //! What the user says about single columns: `--columns theta_s=2,brdf=3`.
 
+use serde::Serialize;
+
 use super::head::{Head, plain};
 use super::role::{self, Role};
 use super::units::Quantity;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// What a column is said to hold.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
     /// A role that a name could give too.
     Role(Role),
@@ -61,7 +65,7 @@ pub fn place(column: &str, heads: &[Head], option: &str) -> Result<usize, Error>
         Err(Error::new(what).help(format!(
             "{option} takes the numbers 1 to {} or the names of columns: {}",
             heads.len(),
-            names.join(", ")
+            some_of(&names)
         )))
     };
     if let Ok(number) = column.parse::<usize>() {

@@ -1,11 +1,14 @@
 //! What a column holds, by the words of its name.
 
+use serde::Serialize;
+
 use super::head::Head;
 use super::unit::Unit;
 use super::units::Quantity;
 
 /// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     /// Angle of incidence.
     ThetaI,
@@ -29,6 +32,8 @@ pub enum Role {
     Sample,
     /// Unit of the value in the row.
     Unit,
+    /// The standard deviation of ln f that a weight of 1 stands for.
+    SigmaLn,
     /// Number or time of a measurement: it tells repeated rows apart.
     Repeat,
     /// Values of this kind.
@@ -38,7 +43,8 @@ pub enum Role {
 }
 
 /// What an unknown column may be, to judge by its name and unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Look {
     /// An angle or azimuth.
     Angle,
@@ -90,14 +96,16 @@ enum Word {
 }
 
 /// Words that names of angles are made of; those of one letter count only beside the name of an angle.
-const WORDS: [(&str, Word); 92] = [
+const WORDS: [(&str, Word); 94] = [
     ("theta", Word::Polar),
+    ("th", Word::Polar),
     ("zenith", Word::Polar),
     ("zen", Word::Polar),
     ("polar", Word::Polar),
     ("angle", Word::Angle),
     ("ang", Word::Angle),
     ("phi", Word::Azimuth),
+    ("ph", Word::Azimuth),
     ("azimuthal", Word::Azimuth),
     ("azimuth", Word::Azimuth),
     ("azim", Word::Azimuth),
@@ -219,13 +227,14 @@ fn word(plain: &str) -> Option<Role> {
         "vaa" | "oaa" => Role::PhiS,
         "raa" | "dphi" | "dazimuth" | "dazi" | "daz" => Role::DeltaPhi,
         "wavelength" | "wavelengthm" | "wavelengthi" | "wl" | "wvl" | "wavelen" | "lambda" | "lambdam" | "lam"
-        | "wave" | "wavenumber" | "laserwavelength" => Role::Wavelength,
+        | "wave" | "wavenumber" | "laserwavelength" | "nm" | "um" | "µm" | "μm" => Role::Wavelength,
         "polarisation" | "polarization" | "pol" | "polstate" | "polarisationstate" | "polarizationstate" => {
             Role::Polarisation
         }
         "sample" | "samplename" | "sampleid" | "sampleno" | "samplenumber" | "specimen" | "specimenid" | "material"
         | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
         "unit" | "units" => Role::Unit,
+        "sigmaln" => Role::SigmaLn,
         "run" | "repeat" | "repetition" | "rep" | "index" | "idx" | "no" | "nr" | "number" | "id" | "time" | "date"
         | "datetime" | "timestamp" | "measurement" | "measurementno" | "runno" | "runid" | "point" | "row"
         | "sweep" => Role::Repeat,
@@ -328,9 +337,13 @@ fn look(head: &Head) -> Look {
         Some(Unit::PerCm) => return Look::Wavelength,
         _ => {}
     }
-    if has(&["wavelength", "lambda", "wavenumber"]) {
+    const SAMPLES: [&str; 9] = [
+        "name", "label", "batch", "lot", "wafer", "panel", "tile", "coating", "paint",
+    ];
+    if has(&["wavelength", "lambda", "wavenumber", "frequency", "photon"]) || is(&["colour", "color", "filter", "band"])
+    {
         Look::Wavelength
-    } else if has(&["sample", "specimen", "material", "coupon"]) {
+    } else if has(&["sample", "specimen", "material", "coupon"]) || is(&SAMPLES) {
         Look::Sample
     } else if has(&["unit"]) {
         Look::Unit
@@ -386,7 +399,7 @@ mod tests {
     fn other_columns() {
         all(
             Role::Wavelength,
-            "wavelength, wavelength_um, lambda [nm], λ (µm), wavenumber (cm-1), lambda/m, wavelength_m",
+            "wavelength, wavelength_um, lambda [nm], λ (µm), wavenumber (cm-1), lambda/m, wavelength_m, nm",
         );
         all(Role::Polarisation, "pol, polarization, Polarisation state");
         all(Role::Sample, "sample, Sample ID, specimen, scan");
@@ -399,8 +412,11 @@ mod tests {
             Role::Unknown(Look::Angle),
             "theta_h, phi_d, theta_d, tilt (deg), sample rotation, x (rad), phi_h, polarangle_azimuth",
         );
-        all(Role::Unknown(Look::Wavelength), "centre wavelength of filter, x (nm)");
-        all(Role::Unknown(Look::Sample), "sample batch");
+        all(
+            Role::Unknown(Look::Wavelength),
+            "centre wavelength of filter, x (nm), frequency_THz, filter",
+        );
+        all(Role::Unknown(Look::Sample), "sample batch, name, coating");
         all(
             Role::Unknown(Look::Polarisation),
             "polarizer_deg, detector polarisation",

@@ -61,7 +61,7 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             scans.iter_mut().for_each(|scan| scan.raw.about.divisor = divisor);
         }
     }
-    if !options.repeats {
+    if !options.repeats && !sheet.facts.own {
         let tells_apart = unused
             .iter()
             .filter(|seen| seen.role == Role::Repeat)
@@ -163,6 +163,7 @@ impl<'a> Reader<'a> {
         }
         let group = self.group(cells)?;
         let columns = self.columns;
+        let sigma_ln = columns.sigma_ln.map(|column| self.number(cells, column)).transpose()?;
         let angles = Angles {
             theta_i: match columns.theta_i {
                 Some(column) => self.number(cells, column)?,
@@ -185,7 +186,9 @@ impl<'a> Reader<'a> {
                 weight: self.weight(cells, value)?,
                 line,
             };
-            self.scans[group * columns.values.len() + place].raw.rows.push(row);
+            let raw = &mut self.scans[group * columns.values.len() + place].raw;
+            raw.about.sigma_ln = sigma_ln;
+            raw.rows.push(row);
         }
         Ok(())
     }
@@ -337,6 +340,7 @@ impl<'a> Reader<'a> {
         add(columns.wavelength, "wavelength");
         add(columns.polarisation, "polarisation");
         add(columns.unit, "unit of the value");
+        add(columns.sigma_ln, "standard deviation of ln f at a weight of 1");
         columns
             .splits
             .iter()
@@ -385,10 +389,12 @@ impl<'a> Reader<'a> {
                     names: columns.heads.iter().map(|head| head.text.clone()).collect(),
                 },
             },
+            one_angle: false,
+            settled: self.facts.own,
             angles_named: columns.angles_named,
             divisor: value.divisor,
-            sigma_ln: self.facts.sigma_ln,
-            notes: Vec::new(),
+            sigma_ln: None,
+            ..About::default()
         }
     }
 
@@ -454,7 +460,7 @@ impl Seen {
             Role::Polarisation | Role::Unknown(Look::Polarisation) => (self.varies, "a polarisation"),
             Role::Sample | Role::Unknown(Look::Sample) => (self.varies, "the name of a sample"),
             Role::Unit | Role::Unknown(Look::Unit) => (self.varies, "a unit"),
-            Role::Repeat | Role::Value(_) | Role::Unknown(Look::Other) => (false, ""),
+            Role::Repeat | Role::SigmaLn | Role::Value(_) | Role::Unknown(Look::Other) => (false, ""),
         };
         if !matters {
             return Ok(());

@@ -22,7 +22,7 @@ pub enum WeightKind {
 }
 
 /// Names of a standard deviation; what contains another stands first.
-const SIGMA: [&str; 20] = [
+const SIGMA: [&str; 21] = [
     "standarduncertainty",
     "expandeduncertainty",
     "combineduncertainty",
@@ -36,6 +36,7 @@ const SIGMA: [&str; 20] = [
     "error",
     "noise",
     "uncert",
+    "delta",
     "std",
     "unc",
     "dev",

@@ -22,7 +22,7 @@ pub enum Unit {
 }
 
 /// Units by their spelling, in lower case and without spaces, `^` and `*`.
-const SPELLINGS: [(&str, Unit); 97] = [
+const SPELLINGS: [(&str, Unit); 99] = [
     ("deg", Unit::Deg),
     ("degs", Unit::Deg),
     ("degree", Unit::Deg),
@@ -121,6 +121,8 @@ const SPELLINGS: [(&str, Unit); 97] = [
     ("arb.u.", Unit::Foreign),
     ("arb.units", Unit::Foreign),
     ("db", Unit::Foreign),
+    ("thz", Unit::Foreign),
+    ("ev", Unit::Foreign),
 ];
 
 impl Unit {

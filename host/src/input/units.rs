@@ -4,6 +4,8 @@ use brdfit_core::real::Real;
 use clap::ValueEnum;
 use serde::Serialize;
 
+use crate::number::shortest;
+
 /// The unit of angles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -165,16 +167,16 @@ impl Quantity {
     /// # Errors
     /// Why the value has none: it is not positive, or no number of the machine.
     pub fn brdf(self, value: f64, theta_s: f64) -> Result<f64, String> {
-        let fail = |why: &str| Err(format!("{} is {value}, {why}", self.title()));
+        let fail = |why: &str| Err(format!("{} is {}, {why}", self.title(), shortest(value)));
         if !value.is_finite() {
-            return fail("which is no value");
+            return fail("which is not a number");
         }
         if let Some(factor) = self.is_logarithm() {
             let ln = value * factor;
             return if (-708.0..=709.0).contains(&ln) {
                 Ok(Real::exp(ln))
             } else {
-                fail("the logarithm of no number of the machine")
+                fail("the logarithm of a value beyond the range of numbers")
             };
         }
         if !(value > 0.0) {

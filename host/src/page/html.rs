@@ -3,14 +3,13 @@
 use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::section::Section;
+use super::section::{Section, Table};
 use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::Outcome;
 use crate::input::left_out;
 use crate::names;
-use crate::number::{digits, percent, short};
-use crate::output::shortest;
+use crate::number::{self, percent, shortest, two};
 use crate::plain::plain;
 use crate::result::columns::{Json, of_fits};
 use crate::result::words::{self, shown};
@@ -62,7 +61,7 @@ fn overview(sections: &[Section]) -> Markup {
             } }
             tbody {
                 @for (place, section) in sections.iter().enumerate() { tr {
-                    @let outcome = &section.report.outcome;
+                    @let outcome = &section.fit.outcome;
                     td.text { a href={ "#scan" (place + 1) } { (section.label) } }
                     td { (outcome.samples) }
                     @for name in names(sections) {
@@ -86,9 +85,11 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
                     (PreEscaped(inline(&figure.svg, &format!("{}-{}", place + 1, number + 1))))
                     figcaption { b { "Figure " (number + 1) ". " } (figure.caption) }
                 }
-                // Each table stands beside the figure that shows the same.
-                @if number == 3 { (minima(section)) }
-                @if number == 4 { (angles(section)) }
+                @match figure.table {
+                    Some(Table::Minima) => (minima(section)),
+                    Some(Table::Angles) => (angles(section)),
+                    None => {},
+                }
             }
             (provenance(section, command))
         }
@@ -97,28 +98,28 @@ fn scan(place: usize, section: &Section, heading: bool, command: &str) -> Markup
 
 /// What matters most, in sentences.
 fn summary(section: &Section) -> Markup {
-    let (report, outcome) = (&section.report, &section.report.outcome);
+    let (fit, outcome) = (&section.fit, &section.fit.outcome);
     let known = &outcome.uncertainty;
     html! {
         ul.summary {
             li {
                 "The best fit leaves an rms residual of ln " i { "f" } " of " b { (percent(outcome.rms_ln)) }
-                " over " (outcome.samples) " samples at " (report.angles.len())
-                @if report.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (names::stop_meaning(outcome.stop)) "."
-                @if let Some(chi2) = report.chi2 {
+                " over " (outcome.samples) " samples at " (fit.angles.len())
+                @if fit.angles.len() == 1 { " angle" } @else { " angles" } " of incidence (MSE" sup { "2" } " = " (number(outcome.mse2)) "); it " (names::stop_meaning(outcome.stop)) "."
+                @if let Some(chi2) = fit.chi2 {
                     " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
                 }
             }
-            @for open in undetermined(&outcome.material(), known, &report.derived) {
+            @for open in undetermined(&outcome.material(), known, &fit.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
-            @if !report.derived.iter().all(Derived::conserves_energy) {
+            @if !fit.derived.iter().all(Derived::conserves_energy) {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
             }
             @if section.missed() {
                 li.flag { "A start of the paper's method ended below this fit: take --method paper, or another --seed." }
             }
-            @if let Some(left_out) = left_out::summary(&report.left_out) {
+            @if let Some(left_out) = left_out::summary(&fit.left_out) {
                 li { "Left out: " (left_out) "." }
             }
         }
@@ -126,7 +127,7 @@ fn summary(section: &Section) -> Markup {
 }
 
 fn parameters(section: &Section) -> Markup {
-    let (options, outcome) = (&section.report.options, &section.report.outcome);
+    let (options, outcome) = (&section.fit.options, &section.fit.outcome);
     let known = &outcome.uncertainty;
     html! {
         table {
@@ -139,7 +140,7 @@ fn parameters(section: &Section) -> Markup {
                         td.text { (symbol(parameter.name)) }
                         td.text { (parameter.what) @if !parameter.unit.is_empty() { ", " (parameter.unit) } }
                         td { (number(outcome.params[index])) }
-                        td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (short(known.stderr[index])) } @else { "–" } }
+                        td { @if known.places[index] == Some(Place::Inside) && known.stderr[index].is_finite() { (two(known.stderr[index])) } @else { "–" } }
                         td { (shortest(options.lower[index])) " – " (shortest(options.upper[index])) }
                         td.text { (remark(section, index)) }
                     }
@@ -147,13 +148,13 @@ fn parameters(section: &Section) -> Markup {
             }
         }
         @let strong = correlated(section);
-        @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (short(known.condition)) "." } }
+        @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (two(known.condition)) "." } }
     }
 }
 
 /// Where a parameter ended, if not inside its bounds, or how well it is known.
 fn remark(section: &Section, index: usize) -> String {
-    let outcome = &section.report.outcome;
+    let outcome = &section.fit.outcome;
     let known = &outcome.uncertainty;
     let on = |bound: &str, push: f64| {
         if push.abs() < 0.05 {
@@ -171,7 +172,7 @@ fn remark(section: &Section, index: usize) -> String {
         Some(Place::Fixed) => "fixed".into(),
         Some(Place::Unseen) => "no sample depends on it".into(),
         _ => {
-            let open = undetermined(&outcome.material(), known, &section.report.derived);
+            let open = undetermined(&outcome.material(), known, &section.fit.derived);
             let name = outcome.model.parameters[index].name;
             let not = open.iter().any(|open| open.parameters.contains(&name));
             if not { "not determined".into() } else { String::new() }
@@ -181,7 +182,7 @@ fn remark(section: &Section, index: usize) -> String {
 
 /// Pairs with a correlation of 0.9 and more.
 fn correlated(section: &Section) -> Vec<String> {
-    let outcome = &section.report.outcome;
+    let outcome = &section.fit.outcome;
     let (known, count) = (&outcome.uncertainty, outcome.params.len());
     let name = |index: usize| outcome.model.parameters[index].name;
     let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
@@ -194,7 +195,7 @@ fn correlated(section: &Section) -> Vec<String> {
 
 fn minima(section: &Section) -> Markup {
     let minima = &section.survey.minima;
-    let outcome = &section.report.outcome;
+    let outcome = &section.fit.outcome;
     html! {
         table {
             caption {
@@ -219,20 +220,20 @@ fn minima(section: &Section) -> Markup {
 }
 
 fn angles(section: &Section) -> Markup {
-    let report = &section.report;
+    let fit = &section.fit;
     let with_error = |value| minus(&shown(value).replace("+-", "±"));
     html! {
         table {
             caption {
                 "At each angle of incidence, with standard errors; peak and width are those of the surface lobe in plane."
-                @if report.derived.len() > ANGLES { " The first " (ANGLES) " of " (report.derived.len()) " angles are listed." }
+                @if fit.derived.len() > ANGLES { " The first " (ANGLES) " of " (fit.derived.len()) " angles are listed." }
             }
             thead { tr {
                 th { (symbol("theta_i")) ", deg" } th { (symbol("rho_s")) " F" } th { (symbol("rho_v")) " F" }
                 th { "peak, sr" sup { "−1" } } th { "at, deg" } th { "width, deg" } th { "reflectance" }
             } }
             tbody {
-                @for at in report.derived.iter().take(ANGLES) { tr {
+                @for at in fit.derived.iter().take(ANGLES) { tr {
                     td { (number(at.theta_i.to_degrees())) }
                     td { (at.rho_s_f.map_or_else(|| "–".into(), with_error)) }
                     td { (at.rho_v_f.map_or_else(|| "–".into(), with_error)) }
@@ -248,12 +249,12 @@ fn angles(section: &Section) -> Markup {
 
 /// What it takes to make this again, and what came out: every column of the tables of results but the time, which is another each time.
 fn provenance(section: &Section, command: &str) -> Markup {
-    let (report, options) = (&section.report, &section.report.options);
+    let (fit, options) = (&section.fit, &section.fit.options);
     let precision = names::precision(options.precision);
-    let columns = of_fits(&[report.outcome.model])
+    let columns = of_fits(&[fit.outcome.model])
         .into_iter()
         .filter(|column| column.json != Json::Time);
-    let cells = columns.map(|column| (column.cell(&report.into()), column));
+    let cells = columns.map(|column| (column.cell(&fit.into()), column));
     let numbers = cells.filter(|(cell, _)| !cell.is_empty());
     html! {
         table.provenance {
@@ -261,12 +262,14 @@ fn provenance(section: &Section, command: &str) -> Markup {
             tbody {
                 tr { th.text { "command" } td.text { code { (command) } } }
                 tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                tr { th.text { "input" } td.text { (plain(&report.file)) ", " (section.source.bytes) " bytes" } }
-                tr { th.text { "SHA-256" } td.text { code { (section.source.sha256) } } }
-                tr { th.text { "read as" } td.text { (report.read_as) } }
-                tr { th.text { "left out" } td.text { (left_out::summary(&report.left_out).unwrap_or_else(|| "nothing".into())) } }
+                @for source in &fit.about.sources {
+                    tr { th.text { "input" } td.text { (plain(&source.file)) ", " (source.bytes) " bytes" } }
+                    tr { th.text { "SHA-256" } td.text { code { (source.sha256) } } }
+                }
+                tr { th.text { "read as" } td.text { (fit.read_as) } }
+                tr { th.text { "left out" } td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
-                @if report.choice.is_some() { tr { th.text { "choice" } td.text { "the fewest terms that the scan supports, by BIC" } } }
+                @if fit.choice.is_some() { tr { th.text { "choice" } td.text { "the fewest terms that the scan supports, by BIC" } } }
             }
             tbody {
                 @for (cell, column) in numbers { tr {
@@ -280,7 +283,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
 
 /// The models of the fits, as a clause.
 fn models(sections: &[Section]) -> String {
-    let mut models: Vec<_> = sections.iter().map(|section| section.report.outcome.model).collect();
+    let mut models: Vec<_> = sections.iter().map(|section| section.fit.outcome.model).collect();
     models.dedup();
     match &models[..] {
         [one] if one.is_paper() => {
@@ -293,9 +296,7 @@ fn models(sections: &[Section]) -> String {
 
 /// The names of the parameters of all fits, each once.
 fn names(sections: &[Section]) -> Vec<&'static str> {
-    let models = sections
-        .iter()
-        .flat_map(|section| section.report.outcome.model.parameters);
+    let models = sections.iter().flat_map(|section| section.fit.outcome.model.parameters);
     let mut names: Vec<&'static str> = Vec::new();
     for parameter in models {
         if !names.contains(&parameter.name) {
@@ -328,14 +329,8 @@ fn symbol(name: &str) -> Markup {
 
 /// Five significant digits, with a power of ten where that is shorter.
 fn number(value: f64) -> Markup {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    let text = digits(rounded);
-    html! {
-        @match text.split_once('e') {
-            Some((mantissa, exponent)) => { (minus(mantissa)) " × 10" sup { (minus(exponent)) } },
-            None => { (minus(&text)) },
-        }
-    }
+    let (mantissa, exponent) = number::set(&number::significant(value, 5));
+    html! { (mantissa) @if let Some(exponent) = exponent { " × 10" sup { (exponent) } } }
 }
 
 fn minus(text: &str) -> String {

@@ -7,12 +7,12 @@ use serde::Deserialize;
 
 use crate::engine::{Material, Model, Values};
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::plain::of_cell;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fitted {
+pub struct StoredFit {
     /// Its file, as the fit was given it.
     pub file: PathBuf,
     /// Which scan of the file it is.
@@ -22,7 +22,7 @@ pub struct Fitted {
 }
 
 /// The results in the bytes of a file of JSON or CSV; `None` if it holds something else, such as a scan.
-pub fn parse(bytes: &[u8]) -> Option<Vec<Fitted>> {
+pub fn parse(bytes: &[u8]) -> Option<Vec<StoredFit>> {
     let text = std::str::from_utf8(bytes).ok()?;
     if text.trim_start().starts_with(['{', '[']) {
         json(text)
@@ -41,7 +41,7 @@ struct Object {
     error: Option<String>,
 }
 
-fn json(text: &str) -> Option<Vec<Fitted>> {
+fn json(text: &str) -> Option<Vec<StoredFit>> {
     let one = serde_json::from_str::<Object>(text).map(|one| vec![one]);
     let objects = one.or_else(|_| serde_json::from_str::<Vec<Object>>(text)).ok()?;
     let fitted = |object: Object| {
@@ -49,7 +49,7 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
             Some(values) => Ok(material(object.model.as_deref(), |name| values.get(name).copied())?),
             None => Err(object.error?),
         };
-        Some(Fitted {
+        Some(StoredFit {
             file: object.file,
             scan: object.scan,
             material,
@@ -58,7 +58,7 @@ fn json(text: &str) -> Option<Vec<Fitted>> {
     objects.into_iter().map(fitted).collect()
 }
 
-fn csv(text: &str) -> Option<Vec<Fitted>> {
+fn csv(text: &str) -> Option<Vec<StoredFit>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let head = reader.headers().ok()?.clone();
     let place = |name: &str| head.iter().position(|column| column == name);
@@ -77,7 +77,7 @@ fn csv(text: &str) -> Option<Vec<Fitted>> {
             Some(material) => Ok(material),
             None => Err(cell("error")?.to_string()),
         };
-        all.push(Fitted {
+        all.push(StoredFit {
             file: of_cell(row.get(file)?).into(),
             scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             material,

@@ -1,15 +1,12 @@
 //! One scan: its fit, the fits from all starts, and what is drawn of both.
 
-use brdfit_core::geometry::Sample;
-
-use super::provenance::Source;
-use crate::analysis::derived::{self, Value};
+use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::engine::robust;
 use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, Measurement};
-use crate::plot;
+use crate::plot::{self, Albedo, Met};
 
 /// The albedo is drawn up to this angle of incidence, degrees, in steps of two.
 const STEEPEST: u32 = 88;
@@ -18,10 +15,8 @@ const STEEPEST: u32 = 88;
 pub struct Section {
     /// File and name of the scan.
     pub label: String,
-    /// Its file.
-    pub source: Source,
     /// The fit.
-    pub report: FittedScan,
+    pub fit: FittedScan,
     /// The paper's method on the same samples: distinct minima and where all starts ended.
     pub survey: Outcome,
     /// The number of its starts.
@@ -38,24 +33,34 @@ pub struct Figure {
     pub svg: String,
     /// What stands below it.
     pub caption: &'static str,
+    /// The table that shows the same in numbers.
+    pub table: Option<Table>,
+}
+
+/// A table beside a figure.
+pub enum Table {
+    /// The distinct minima.
+    Minima,
+    /// What is derived at each angle of incidence.
+    Angles,
 }
 
 impl Section {
     /// Fits a scan by `options`, and by the paper's method if that is another.
     ///
     /// # Errors
-    /// The scan can not be fitted.
-    pub fn new(measurement: &Measurement, source: &Source, options: &FitOptions) -> Result<Section, Error> {
-        let report = fit(measurement, options)?;
-        let samples = robust::kept(&measurement.samples, &report.outcome);
+    /// The scan cannot be fitted.
+    pub fn new(measurement: &Measurement, options: &FitOptions) -> Result<Section, Error> {
+        let fit = fit(measurement, options)?;
+        let samples = robust::kept(&measurement.samples, &fit.outcome);
         let paper = FitOptions {
             method: Method::Paper,
             starts: None,
             robust: false,
-            ..report.options
+            ..fit.options
         };
-        let (survey, starts) = if report.options.method == Method::Paper {
-            (report.outcome.clone(), report.options.starts())
+        let (survey, starts) = if fit.options.method == Method::Paper {
+            (fit.outcome.clone(), fit.options.starts())
         } else {
             let survey = engine::fit(&samples, &paper);
             (
@@ -65,9 +70,13 @@ impl Section {
         };
         Ok(Section {
             label: measurement.label(),
-            source: source.clone(),
-            figures: figures(&samples, &report, &survey.minima, starts),
-            report,
+            figures: figures(
+                &plot::Drawn::of_fit(measurement, &fit.outcome).data(),
+                &fit,
+                &survey.minima,
+                starts,
+            ),
+            fit,
             survey,
             starts,
         })
@@ -76,50 +85,62 @@ impl Section {
     /// Do the starts of the survey end lower than the fit, by more than rounding?
     pub fn missed(&self) -> bool {
         let least = self.survey.minima.first().map_or(f64::INFINITY, |minimum| minimum.mse2);
-        least < self.report.outcome.mse2 * (1.0 - 1e-6)
+        least < self.fit.outcome.mse2 * (1.0 - 1e-6)
     }
 }
 
-fn figures(samples: &[Sample<f64>], report: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
-    let outcome = &report.outcome;
+fn figures(data: &plot::Data, fit: &FittedScan, minima: &[Minimum], starts: u32) -> Vec<Figure> {
+    let outcome = &fit.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let material = outcome.material();
     let with = |values: Values| Material { values, ..material };
     let others = minima.iter().filter(other).map(|minimum| with(minimum.params));
     let curves: Vec<Material> = std::iter::once(material).chain(others).collect();
-    let albedo = |theta_i: f64| derived::at(theta_i, &material, &outcome.uncertainty).reflectance;
-    let angles = (0..=STEEPEST).step_by(2).map(f64::from);
-    let line: Vec<(f64, Value)> = angles.map(|degrees| (degrees, albedo(degrees.to_radians()))).collect();
-    let measured = report
-        .derived
-        .iter()
-        .map(|at| (at.theta_i.to_degrees(), at.reflectance));
-    let measured: Vec<(f64, Value)> = measured.collect();
+    let albedo = |at: &Derived| Albedo {
+        theta_i: at.theta_i.to_degrees(),
+        value: at.reflectance.value,
+        stderr: at.reflectance.stderr,
+    };
+    let angles = (0..=STEEPEST).step_by(2).map(|degrees| f64::from(degrees).to_radians());
+    let line: Vec<Albedo> = angles
+        .map(|theta_i| albedo(&derived::at(theta_i, &material, &outcome.uncertainty)))
+        .collect();
+    let measured: Vec<Albedo> = fit.derived.iter().map(albedo).collect();
+    let met = |minimum: &Minimum| Met {
+        mse2: minimum.mse2,
+        hits: minimum.hits,
+        first_start: minimum.first_start,
+    };
     vec![
         Figure {
             name: "curves",
-            svg: plot::scan_svg("", samples, &curves),
-            caption: "Measured BRDF (dots), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+            svg: plot::scan_svg("", data, &curves),
+            caption: "Measured BRDF (dots; grey crosses were left out), best fit (thick) and the other distinct minima (thin) over the scattering angle.",
+            table: None,
         },
         Figure {
             name: "residuals",
-            svg: plot::residuals_svg(samples, &material, outcome.uncertainty.scale),
+            svg: plot::residuals_svg(data.samples, &material, outcome.uncertainty.scale),
             caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
+            table: None,
         },
         Figure {
             name: "polar",
-            svg: plot::polar_svg(samples, &material),
+            svg: plot::polar_svg(data.samples, &material),
             caption: "BRDF in the plane of incidence on a logarithmic radius: measured (crosses), best fit (lines), direction of incidence (dashed).",
+            table: None,
         },
         Figure {
             name: "starts",
-            svg: plot::waterfall_svg(minima, starts),
+            svg: plot::waterfall_svg(&minima.iter().map(met).collect::<Vec<_>>(), starts),
             caption: "Fits from uniform starts by the paper's method: left, the final error of each, sorted; right, the least error among the first of them. Each counts with the distinct minimum it ended in, whose error is its own to 1 %.",
+            table: Some(Table::Minima),
         },
         Figure {
             name: "albedo",
             svg: plot::albedo_svg(&line, &measured),
             caption: "Directional-hemispherical reflectance (directional albedo) of the best fit, with one standard error; dots at the measured angles of incidence.",
+            table: Some(Table::Angles),
         },
     ]
 }

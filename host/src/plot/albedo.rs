@@ -5,7 +5,6 @@ use std::fmt::Write;
 use super::axis::Axis;
 use super::frame::frame;
 use super::svg;
-use crate::analysis::derived::Value;
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;
@@ -15,13 +14,24 @@ const TOP: f64 = 14.0;
 const BOTTOM: f64 = 50.0;
 const HEIGHT: f64 = 240.0;
 
+/// The reflectance at one angle of incidence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Albedo {
+    /// The angle, degrees.
+    pub theta_i: f64,
+    /// Dimensionless.
+    pub value: f64,
+    /// One standard error of it.
+    pub stderr: f64,
+}
+
 /// A line with a band of one standard error on each side over theta_i (degrees); dots at the angles that were measured.
 ///
 /// The dashed line is 1: above it the model makes energy.
-pub fn albedo_svg(curve: &[(f64, Value)], measured: &[(f64, Value)]) -> String {
+pub fn albedo_svg(curve: &[Albedo], measured: &[Albedo]) -> String {
     let width = WIDTH - LEFT - RIGHT;
     let x = Axis::angles([0.0, 90.0].into_iter(), width);
-    let values = curve.iter().chain(measured).map(|(_, albedo)| albedo.value);
+    let values = curve.iter().chain(measured).map(|albedo| albedo.value);
     let y = Axis::linear(values.chain([0.0]), HEIGHT).upwards();
     let pixels = |theta_i: f64, value: f64| (x.pixel(theta_i), y.pixel(value).clamp(-5.0, HEIGHT + 5.0));
 
@@ -33,11 +43,11 @@ pub fn albedo_svg(curve: &[(f64, Value)], measured: &[(f64, Value)]) -> String {
     );
     frame(&mut out, &x, &y, true, true);
     out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linecap=\"round\">");
-    let known = || curve.iter().filter(|(_, albedo)| albedo.stderr.is_finite());
-    let above = known().map(|(theta_i, albedo)| pixels(*theta_i, albedo.value + albedo.stderr));
+    let known = || curve.iter().filter(|albedo| albedo.stderr.is_finite());
+    let above = known().map(|albedo| pixels(albedo.theta_i, albedo.value + albedo.stderr));
     let below = known()
         .rev()
-        .map(|(theta_i, albedo)| pixels(*theta_i, albedo.value - albedo.stderr));
+        .map(|albedo| pixels(albedo.theta_i, albedo.value - albedo.stderr));
     let band: Vec<_> = above.chain(below).collect();
     svg::path(
         &mut out,
@@ -54,11 +64,10 @@ pub fn albedo_svg(curve: &[(f64, Value)], measured: &[(f64, Value)]) -> String {
     }
     let line: Vec<_> = curve
         .iter()
-        .map(|(theta_i, albedo)| pixels(*theta_i, albedo.value))
+        .map(|albedo| pixels(albedo.theta_i, albedo.value))
         .collect();
     svg::path(&mut out, "stroke=\"#f08a24\" stroke-width=\"2.5\"", &line);
-    let measured = measured.iter().map(|(theta_i, albedo)| pixels(*theta_i, albedo.value));
-    out.push_str("");
+    let measured = measured.iter().map(|albedo| pixels(albedo.theta_i, albedo.value));
     svg::dots(&mut out, measured);
     out.push_str("</g></g>");
     let middle = LEFT + 0.5 * width;

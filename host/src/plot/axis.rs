@@ -29,28 +29,31 @@ impl Axis {
     pub fn angles(values: impl Iterator<Item = f64>, pixels: f64) -> Axis {
         let (low, high) = range(values, -90.0, 90.0, 4.0);
         let most = (pixels / 42.0).min(9.0);
-        let step = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0]
-            .into_iter()
-            .find(|s| (high - low) / s <= most);
-        let step = step.unwrap_or(45.0);
-        let minor = if step == 30.0 { 10.0 } else { step / 5.0 };
+        const STEPS: [f64; 8] = [0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0];
+        let fits = STEPS.iter().position(|step| (high - low) / step <= most);
         let margin = 0.02 * (high - low);
         let (low, high) = (low - margin, high + margin);
-        let ticks = steps(low, high, minor).map(|at| {
-            let turns = at / step;
-            // In a narrow panel a label at the very end would run into the next panel's.
-            let end = (at - low).min(high - at) / (high - low) * pixels;
-            let major = (turns - turns.round()).abs() < 1e-6 && (pixels > 500.0 || end > 14.0);
-            Tick {
-                at,
-                label: major.then(|| plain(at)),
-            }
-        });
+        let ticks = |step: f64| -> Vec<Tick> {
+            let minor = if step == 30.0 { 10.0 } else { step / 5.0 };
+            let tick = |at: f64| {
+                let turns = at / step;
+                // In a narrow panel a label at the very end would run into the next panel's.
+                let end = (at - low).min(high - at) / (high - low) * pixels;
+                let major = (turns - turns.round()).abs() < 1e-6 && (pixels > 500.0 || end > 14.0);
+                Tick {
+                    at,
+                    label: major.then(|| plain(at)),
+                }
+            };
+            steps(low, high, minor).map(tick).collect()
+        };
+        let larger = STEPS[..=fits.unwrap_or(STEPS.len() - 1)].iter().rev();
+        let ticks = with_labels(larger.map(|&step| ticks(step)));
         Axis {
             low,
             high,
             pixels,
-            ticks: ticks.collect(),
+            ticks,
             upwards: false,
         }
     }
@@ -63,20 +66,21 @@ impl Axis {
         // The least of 1, 2 and 5 times a power of ten that gives few enough labels.
         let least = (high - low) / (pixels / 70.0).max(3.0);
         let power = Real::exp(log10(least).floor() / LOG10_E);
-        let step = [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .map(|k| k * power)
-            .find(|&step| step >= least);
-        let step = step.unwrap_or(10.0 * power);
-        let ticks = steps(low, high, step).map(|at| Tick {
-            at,
-            label: Some(svg::number(at).replace('-', "−")),
-        });
+        let ticks = |step: f64| -> Vec<Tick> {
+            let tick = |at: f64| Tick {
+                at,
+                label: Some(svg::number(at)),
+            };
+            steps(low, high, step).map(tick).collect()
+        };
+        let smaller = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2].map(|k| k * power);
+        let first = smaller.iter().rposition(|&step| step >= least).unwrap_or(0);
+        let ticks = with_labels(smaller[first..].iter().map(|&step| ticks(step)));
         Axis {
             low,
             high,
             pixels,
-            ticks: ticks.collect(),
+            ticks,
             upwards: false,
         }
     }
@@ -93,30 +97,49 @@ impl Axis {
         let (low, high) = (low - margin, high + margin);
         let decades = high.floor() - low.ceil() + 1.0;
         let most = (pixels / 32.0).floor();
-        let mut ticks = Vec::new();
-        if decades >= 3.0 {
-            let step = (decades / most).ceil().max(1.0);
-            for at in steps(low, high, 1.0) {
-                let label = (at.rem_euclid(step) == 0.0).then(|| format!("10{}", svg::sup(&plain(at))));
-                ticks.push(Tick { at, label });
-            }
-        }
-        for decade in steps(low - 1.0, high, 1.0).filter(|_| decades <= most) {
-            for mantissa in 1..10 {
-                let at = decade + log10(f64::from(mantissa));
-                let label = match mantissa {
-                    1 if decades >= 3.0 => continue,
-                    1 | 2 | 5 => true,
-                    3 | 7 => high - low < 0.8,
-                    _ => false,
-                };
-                let value = f64::from(mantissa) * Real::exp(decade / LOG10_E);
-                let label = (label && decades < 3.0).then(|| svg::number(value));
-                if low <= at && at <= high {
-                    ticks.push(Tick { at, label });
+        let powers = |step: f64| -> Vec<Tick> {
+            let tick = |at: f64| Tick {
+                at,
+                label: (at.rem_euclid(step) == 0.0).then(|| format!("10{}", svg::sup(&plain(at)))),
+            };
+            steps(low, high, 1.0).map(tick).collect()
+        };
+        // The mantissas that have a label, where there are not enough powers of ten.
+        let mantissas = |labelled: &[f64]| -> Vec<Tick> {
+            let mut ticks = Vec::new();
+            let minor = (1..10).map(f64::from).filter(|mantissa| !labelled.contains(mantissa));
+            let all: Vec<(f64, bool)> = labelled.iter().map(|&mantissa| (mantissa, true)).collect();
+            let all: Vec<(f64, bool)> = all.into_iter().chain(minor.map(|mantissa| (mantissa, false))).collect();
+            for decade in steps(low - 1.0, high, 1.0).filter(|_| decades <= most) {
+                for &(mantissa, is_labelled) in &all {
+                    let at = decade + log10(mantissa);
+                    let value = mantissa * Real::exp(decade / LOG10_E);
+                    if low <= at && at <= high {
+                        let label = is_labelled.then(|| svg::number(value));
+                        ticks.push(Tick { at, label });
+                    }
                 }
             }
-        }
+            ticks
+        };
+        const FEW: [f64; 3] = [1.0, 2.0, 5.0];
+        const SOME: [f64; 5] = [1.0, 2.0, 3.0, 5.0, 7.0];
+        const WHOLE: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+        const HALVES: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+        let ticks = if decades >= 3.0 {
+            let step = (decades / most).ceil().max(1.0);
+            let mut ticks = with_labels((1..=step as u32).rev().map(|step| powers(f64::from(step))));
+            ticks.extend(
+                mantissas(&[])
+                    .into_iter()
+                    .filter(|tick| (tick.at - tick.at.round()).abs() > 1e-9),
+            );
+            ticks
+        } else {
+            let choices: [&[f64]; 4] = [&FEW, &SOME, &WHOLE, &HALVES];
+            let enough = if high - low < 0.8 { 1 } else { 0 };
+            with_labels(choices[enough..].iter().map(|labelled| mantissas(labelled)))
+        };
         Axis {
             low,
             high,
@@ -153,6 +176,18 @@ impl Axis {
     }
 }
 
+/// The first ticks of which three or more have a label, or the last.
+fn with_labels(choices: impl Iterator<Item = Vec<Tick>>) -> Vec<Tick> {
+    let mut last = Vec::new();
+    for ticks in choices {
+        last = ticks;
+        if last.iter().filter(|tick| tick.label.is_some()).count() >= 3 {
+            break;
+        }
+    }
+    last
+}
+
 /// Least and largest value, at least `span` apart; `low` and `high` if there is none.
 fn range(values: impl Iterator<Item = f64>, low: f64, high: f64, span: f64) -> (f64, f64) {
     let finite = values.filter(|value| value.is_finite());
@@ -172,4 +207,43 @@ fn steps(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
 /// A number as short as it goes, with a true minus sign.
 pub fn plain(value: f64) -> String {
     format!("{value}").replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_axis_has_three_labels() {
+        let labels = |axis: &Axis| axis.ticks().iter().filter(|tick| tick.label.is_some()).count();
+        for pixels in [130.0, 160.0, 200.0, 272.0, 400.0, 818.0] {
+            let mut low = 1e-4;
+            while low < 1e3 {
+                for span in [1e-3, 0.1, 0.7, 1.0, 3.3, 10.0, 77.0] {
+                    for ends in [[-low, low], [low, low + span * low], [0.0, low * span]] {
+                        let axis = Axis::linear(ends.into_iter(), pixels);
+                        assert!(
+                            (3..25).contains(&labels(&axis)),
+                            "linear {ends:?} {pixels}: {}",
+                            labels(&axis)
+                        );
+                    }
+                }
+                for decades in [0.0, 0.3, 0.56, 0.9, 1.3, 2.0, 2.7, 3.5, 4.9, 7.0, 11.0] {
+                    let axis = Axis::logarithm([log10(low), log10(low) + decades].into_iter(), pixels);
+                    assert!(
+                        labels(&axis) >= 3,
+                        "logarithm {low} {decades} {pixels}: {}",
+                        labels(&axis)
+                    );
+                }
+                for width in [1.0, 4.0, 7.0, 19.0, 45.0, 90.0, 170.0, 180.0] {
+                    let begin = (low * 1e3) % 60.0 - 90.0;
+                    let axis = Axis::angles([begin, begin + width].into_iter(), pixels);
+                    assert!(labels(&axis) >= 3, "angles {begin} {width} {pixels}: {}", labels(&axis));
+                }
+                low *= 1.37;
+            }
+        }
+    }
 }

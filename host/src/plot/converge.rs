@@ -6,7 +6,6 @@ use super::axis::Axis;
 use super::frame::frame;
 use super::svg;
 use super::svg::log10;
-use crate::analysis::converge::{Band, MethodStudy, Point, ScanStudy};
 
 /// Least excess that is drawn; less is drawn here.
 const FLOOR: f64 = 1e-10;
@@ -22,49 +21,66 @@ const BOTTOM: f64 = 50.0;
 const GAP: f64 = 16.0;
 const HEIGHT: f64 = 330.0;
 
-/// Colour and dashes of a method.
-fn style(method: &MethodStudy) -> (&'static str, &'static str) {
-    let colour = if method.method == "paper" { "#3b78b8" } else { "#f08a24" };
-    let dashes = if method.precision == "f32" {
-        "stroke-dasharray=\"7 4\""
-    } else {
-        ""
-    };
-    (colour, dashes)
+/// One panel.
+pub struct Panel {
+    /// What stands above it.
+    pub title: String,
+    /// Its lines, the first on top; all panels have the same.
+    pub lines: Vec<Line>,
+}
+
+/// The excess of one method over the run time.
+pub struct Line {
+    /// For the legend.
+    pub label: String,
+    /// Its colour: 0 for orange, 1 for blue.
+    pub colour: usize,
+    /// Drawn in dashes.
+    pub dashed: bool,
+    /// Run time in seconds, and of the relative excess the tenth percentile, the median and the ninetieth.
+    pub points: Vec<(f64, [f64; 3])>,
+}
+
+/// Orange and blue.
+const COLOURS: [&str; 2] = ["#f08a24", "#3b78b8"];
+
+fn style(line: &Line) -> (&'static str, &'static str) {
+    let dashes = if line.dashed { "stroke-dasharray=\"7 4\"" } else { "" };
+    (COLOURS[line.colour % COLOURS.len()], dashes)
 }
 
 /// One panel a scan, side by side: relative excess of the cost over the best known, over wall time in seconds.
-pub fn converge_svg(scans: &[ScanStudy], seeds: u32) -> String {
-    let columns = scans.len().max(1);
+pub fn converge_svg(panels: &[Panel], seeds: u32) -> String {
+    let columns = panels.len().max(1);
     let width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64;
     let points = || {
-        scans
+        panels
             .iter()
-            .flat_map(|scan| &scan.methods)
-            .flat_map(|method| &method.by_time)
+            .flat_map(|panel| &panel.lines)
+            .flat_map(|line| &line.points)
     };
-    let x = Axis::logarithm(points().map(|point| log10(point.at)), width).rightwards();
-    let bands = points().flat_map(|point| [point.excess.p10, point.excess.median, point.excess.p90]);
+    let x = Axis::logarithm(points().map(|(at, _)| log10(*at)), width).rightwards();
+    let bands = points().flat_map(|(_, excess)| *excess);
     let y = Axis::logarithm(bands.filter(|excess| excess.is_finite()).map(height), HEIGHT);
 
     let mut out = String::new();
     svg::open(&mut out, WIDTH, TOP + HEIGHT + BOTTOM);
     let title = "Excess cost against run time";
     svg::text(&mut out, LEFT, 26.0, "font-size=\"17\" font-weight=\"bold\"", title);
-    let methods = scans.first().map_or(&[][..], |scan| &scan.methods);
-    legend(&mut out, methods, seeds);
+    let lines = panels.first().map_or(&[][..], |panel| &panel.lines);
+    legend(&mut out, lines, seeds);
     let _ = write!(
         out,
         "<clipPath id=\"a\"><rect width=\"{width:.1}\" height=\"{HEIGHT:.1}\"/></clipPath>"
     );
-    for (place, scan) in scans.iter().enumerate() {
+    for (place, panel) in panels.iter().enumerate() {
         let left = LEFT + place as f64 * (width + GAP);
         let _ = write!(out, "\n<g transform=\"translate({left:.1} {TOP:.1})\">");
         frame(&mut out, &x, &y, place == 0, true);
-        svg::text(&mut out, 0.0, -8.0, "", &svg::escape(&scan.name));
+        svg::text(&mut out, 0.0, -8.0, "", &svg::escape(&panel.title));
         out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linejoin=\"round\">");
-        for method in scan.methods.iter().rev() {
-            draw(&mut out, method, &x, &y);
+        for line in panel.lines.iter().rev() {
+            draw(&mut out, line, &x, &y);
         }
         out.push_str("</g></g>");
     }
@@ -89,30 +105,30 @@ fn height(excess: f64) -> f64 {
     log10(excess.clamp(FLOOR, CEILING))
 }
 
-fn draw(out: &mut String, method: &MethodStudy, x: &Axis, y: &Axis) {
-    let (colour, dashes) = style(method);
-    let line = |value: fn(&Band) -> f64| -> Vec<(f64, f64)> {
-        let begun = method.by_time.iter().filter(|point| point.excess.p90.is_finite());
-        let pixel = |point: &Point| (x.pixel(log10(point.at)), y.pixel(height(value(&point.excess))));
-        begun.map(pixel).collect()
+fn draw(out: &mut String, line: &Line, x: &Axis, y: &Axis) {
+    let (colour, dashes) = style(line);
+    let quantile = |k: usize| -> Vec<(f64, f64)> {
+        let begun = line.points.iter().filter(|(_, excess)| excess[2].is_finite());
+        begun
+            .map(|(at, excess)| (x.pixel(log10(*at)), y.pixel(height(excess[k]))))
+            .collect()
     };
-    let mut outline = line(|band| band.p10);
-    outline.extend(line(|band| band.p90).into_iter().rev());
+    let mut outline = quantile(0);
+    outline.extend(quantile(2).into_iter().rev());
     svg::path(out, &format!("fill=\"{colour}\" fill-opacity=\"0.18\""), &outline);
     let stroke = format!("stroke=\"{colour}\" stroke-width=\"2.2\" {dashes}");
-    svg::path(out, &stroke, &line(|band| band.median));
+    svg::path(out, &stroke, &quantile(1));
 }
 
-fn legend(out: &mut String, methods: &[MethodStudy], seeds: u32) {
+fn legend(out: &mut String, lines: &[Line], seeds: u32) {
     let (mut at, y) = (LEFT, 51.0);
     let _ = write!(out, "<g fill=\"none\">");
-    for method in methods {
-        let (colour, dashes) = style(method);
+    for line in lines {
+        let (colour, dashes) = style(line);
         let stroke = format!("stroke=\"{colour}\" stroke-width=\"2.2\" {dashes}");
         svg::path(out, &stroke, &[(at, y - 4.0), (at + 30.0, y - 4.0)]);
-        let text = format!("{} {}", method.method, method.precision);
-        svg::text(out, at + 36.0, y, svg::INK, &text);
-        at += 36.0 + 7.7 * svg::letters(&text) as f64 + 20.0;
+        svg::text(out, at + 36.0, y, svg::INK, &svg::escape(&line.label));
+        at += 36.0 + 7.7 * svg::letters(&line.label) as f64 + 20.0;
     }
     let note = format!("median and 10–90 % of {seeds} seeds");
     svg::text(out, at, y, svg::INK, &note);

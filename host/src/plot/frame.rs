@@ -18,9 +18,60 @@ pub const RIGHT: f64 = 16.0;
 /// Bottom margin, for the labels, pixels.
 pub const BOTTOM: f64 = 50.0;
 /// Between two panels, pixels.
-pub const GAP: f64 = 14.0;
+const GAP: f64 = 14.0;
 /// Height of the caption of a panel, pixels.
 pub const CAPTION: f64 = 27.0;
+
+/// Panels of one size in rows.
+pub struct Grid {
+    columns: usize,
+    count: usize,
+    /// Of a panel, pixels.
+    pub width: f64,
+    /// Of a panel, pixels.
+    pub height: f64,
+}
+
+impl Grid {
+    /// Room for so many panels; `heights` are those in one, two and three columns.
+    pub fn new(count: usize, heights: [f64; 3]) -> Grid {
+        let columns = match count {
+            0 | 1 => 1,
+            2 | 4 => 2,
+            _ => 3,
+        };
+        Grid {
+            columns,
+            count,
+            width: (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64,
+            height: heights[columns - 1],
+        }
+    }
+
+    /// Left and upper edge of a panel, below `top`.
+    pub fn place(&self, panel: usize, top: f64) -> (f64, f64) {
+        let left = LEFT + (panel % self.columns) as f64 * (self.width + GAP);
+        (
+            left,
+            top + (panel / self.columns) as f64 * (self.height + CAPTION) + CAPTION,
+        )
+    }
+
+    /// Is a panel in the first column?
+    pub fn is_left(&self, panel: usize) -> bool {
+        panel.is_multiple_of(self.columns)
+    }
+
+    /// Is there none below a panel?
+    pub fn is_low(&self, panel: usize) -> bool {
+        panel + self.columns >= self.count
+    }
+
+    /// Height of all rows with their captions.
+    pub fn total(&self) -> f64 {
+        self.count.max(1).div_ceil(self.columns) as f64 * (self.height + CAPTION)
+    }
+}
 
 /// Grid, ticks, labels and border of one panel.
 pub fn frame(out: &mut String, x: &Axis, y: &Axis, left: bool, bottom: bool) {

@@ -1,9 +1,8 @@
 //! Several models' best fits over the data.
 
-use brdfit_core::geometry::Sample;
-
 use super::curve::LnF;
 use super::frame::LEFT;
+use super::marks::Data;
 use super::panels::{Line, TRUE_TO, draw};
 use super::svg;
 
@@ -24,7 +23,7 @@ const ENTRIES: usize = 3;
 const ENTRY: (f64, f64) = (272.0, 20.0);
 
 /// As [`super::scan_svg`], one line a model, the first on top and setting the vertical range.
-pub fn overlay_svg(title: &str, samples: &[Sample<f64>], models: &[Overlay]) -> String {
+pub fn overlay_svg(title: &str, data: &Data, models: &[Overlay]) -> String {
     let style = |place: usize| format!("stroke=\"{}\" stroke-width=\"2\"", COLOURS[place % COLOURS.len()]);
     let lines: Vec<Line> = models
         .iter()
@@ -36,7 +35,7 @@ pub fn overlay_svg(title: &str, samples: &[Sample<f64>], models: &[Overlay]) -> 
         })
         .collect();
     let rows = models.len().div_ceil(ENTRIES);
-    draw(title, samples, &lines, 46.0 + ENTRY.1 * rows as f64, |out| {
+    draw(title, data, &lines, 46.0 + ENTRY.1 * rows as f64, |out| {
         out.push_str("<g fill=\"none\">");
         for (place, model) in models.iter().enumerate() {
             let (x, y) = (

@@ -30,7 +30,7 @@ pub fn name(text: &str) -> Result<PathBuf, String> {
 /// Writes a picture in the form that the ending of its name says.
 ///
 /// # Errors
-/// The file can not be written, or the picture not be drawn.
+/// The file cannot be written, or the picture not be drawn.
 pub fn save(target: &Target, svg: &str) -> Result<(), Error> {
     let path = target.path();
     if path

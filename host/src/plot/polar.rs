@@ -7,10 +7,11 @@ use brdfit_core::real::Real;
 
 use super::axis::plain;
 use super::frame::{POINTS, degrees};
-use super::residuals::{by_angle, signed_theta_s};
+use super::marks::thinned;
 use super::svg;
 use super::svg::log10;
 use crate::engine::Material;
+use crate::input::plane::{by_angle, signed_theta_s};
 
 /// Okabe and Ito's colours, which the colour-blind tell apart too.
 const COLOURS: [&str; 6] = ["#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
@@ -26,6 +27,7 @@ const CENTRE: (f64, f64) = (450.0, 430.0);
 /// Data as crosses and the best fit as lines, BRDF (sr^-1) over signed theta_s, which is 0 upwards and positive to the right.
 ///
 /// Of more than six incident angles an even choice is drawn; the dashed ray is that of incidence.
+/// Samples out of the plane of incidence are not drawn.
 pub fn polar_svg(samples: &[Sample<f64>], material: &Material) -> String {
     let all = by_angle(samples);
     let shown: Vec<_> = all.iter().step_by(all.len().div_ceil(COLOURS.len()).max(1)).collect();
@@ -51,19 +53,22 @@ pub fn polar_svg(samples: &[Sample<f64>], material: &Material) -> String {
     let mut out = String::new();
     svg::open(&mut out, WIDTH, HEIGHT);
     grid(&mut out, inner, outer);
-    let stride = samples.len().div_ceil(POINTS).max(1);
     out.push_str("<g fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");
     for (((theta_i, samples), line), colour) in shown.iter().zip(&lines).zip(COLOURS) {
         let ray = [place((-theta_i.to_degrees(), outer)), CENTRE];
         svg::path(&mut out, &format!("stroke=\"{colour}\" stroke-dasharray=\"5 5\""), &ray);
         let line: Vec<_> = line.iter().map(|&point| place(point)).collect();
         svg::path(&mut out, &format!("stroke=\"{colour}\" stroke-width=\"2.2\""), &line);
-        let measured = samples.iter().step_by(stride);
-        crosses(
-            &mut out,
-            colour,
-            measured.map(|sample| place((signed_theta_s(sample), log10(sample.brdf)))),
+        let measured = samples
+            .iter()
+            .filter_map(|sample| Some((signed_theta_s(sample)?, log10(sample.brdf))));
+        // Thinned over the angle, so that peaks stay.
+        let upright = thinned(
+            measured.map(|(angle, log10)| (angle, -log10)).collect(),
+            POINTS / shown.len(),
         );
+        let crossed = upright.into_iter().map(|(angle, log10)| place((angle, -log10)));
+        crosses(&mut out, colour, crossed);
     }
     for (row, ((theta_i, _), colour)) in shown.iter().zip(COLOURS).enumerate() {
         let y = 24.0 + 20.0 * row as f64;
@@ -114,6 +119,17 @@ fn grid(out: &mut String, inner: f64, outer: f64) {
             2.0 * radius
         );
         let label = format!("10{}", svg::sup(&plain(inner + f64::from(decade))));
+        if decades == 1 && decade == 1 {
+            // Two labels are no scale.
+            let half = RADIUS * log10(3.0);
+            svg::text(
+                out,
+                x + half,
+                y + 20.0,
+                "text-anchor=\"middle\" font-size=\"12\"",
+                &svg::number(3.0 * Real::exp(inner * std::f64::consts::LN_10)),
+            );
+        }
         for side in [-1.0, 1.0].iter().take(if decade == 0 { 1 } else { 2 }) {
             let at = x + side * radius;
             svg::text(out, at, y + 20.0, "text-anchor=\"middle\" font-size=\"12\"", &label);

@@ -6,8 +6,6 @@ use super::axis::Axis;
 use super::frame::frame;
 use super::svg;
 use super::svg::log10;
-use crate::analysis::profile::Profile;
-use crate::analysis::profile::calibrate::{LEVELS, threshold};
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;
@@ -23,8 +21,22 @@ const HIGHEST: f64 = 9.0;
 /// A panel whose ends have this ratio is logarithmic.
 const WIDE: f64 = 30.0;
 
+/// The profile of one parameter.
+pub struct Panel {
+    /// The parameter.
+    pub name: &'static str,
+    /// Its best value.
+    pub best: f64,
+    /// Values in ascending order, and the rise of the cost above the best over the variance of a residual.
+    pub points: Vec<(f64, f64)>,
+    /// Levels of confidence, 0 to 1, and the rise that ends an interval of each.
+    pub levels: [(f64, f64); 2],
+    /// The ends of the interval of each level; `None` where the bound of the parameter ends it.
+    pub ends: [[Option<f64>; 2]; 2],
+}
+
 /// One panel a profile: the rise of the cost over the variance of a residual, over the parameter.
-pub fn profile_svg(title: &str, profiles: &[Profile]) -> String {
+pub fn profile_svg(title: &str, profiles: &[Panel]) -> String {
     let columns = profiles.len().clamp(1, 3);
     let rows = profiles.len().max(1).div_ceil(columns);
     let width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64;
@@ -58,13 +70,9 @@ pub fn profile_svg(title: &str, profiles: &[Profile]) -> String {
     out
 }
 
-fn panel(out: &mut String, profile: &Profile, y: &Axis, width: f64, first: bool) {
-    let near: Vec<_> = profile
-        .points
-        .iter()
-        .filter(|point| profile.rise(point) <= 1.5 * HIGHEST)
-        .collect();
-    let values = || near.iter().map(|point| point.value);
+fn panel(out: &mut String, profile: &Panel, y: &Axis, width: f64, first: bool) {
+    let near = profile.points.iter().filter(|(_, rise)| *rise <= 1.5 * HIGHEST);
+    let values = || near.clone().map(|(value, _)| *value);
     let (least, most) = values().fold((f64::MAX, f64::MIN), |(a, b), value| (a.min(value), b.max(value)));
     let logarithmic = least > 0.0 && most > WIDE * least;
     let scale = |value: f64| if logarithmic { log10(value) } else { value };
@@ -74,34 +82,30 @@ fn panel(out: &mut String, profile: &Profile, y: &Axis, width: f64, first: bool)
         Axis::linear(values(), width)
     };
     frame(out, &x, y, first, true);
-    let caption = format!("{} = {}", profile.name, svg::number(profile.best.value));
+    let caption = format!("{} = {}", profile.name, svg::number(profile.best));
     svg::text(out, 0.0, -8.0, "", &caption);
     out.push_str("<g clip-path=\"url(#a)\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">");
-    for (level, dashes) in LEVELS.into_iter().zip(["2 4", "7 4"]) {
-        let at = y.pixel(threshold(level, profile.degrees_of_freedom));
+    for ((level, rise), dashes) in profile.levels.into_iter().zip(["2 4", "7 4"]) {
+        let at = y.pixel(rise);
         let style = format!("stroke=\"#888\" stroke-dasharray=\"{dashes}\"");
         svg::path(out, &style, &[(0.0, at), (width, at)]);
         let grey = "text-anchor=\"end\" fill=\"#666\" font-size=\"11\"";
         svg::text(out, width - 3.0, at - 3.0, grey, &format!("{:.0} %", 100.0 * level));
     }
-    for (interval, dashes) in profile.intervals.iter().zip(["2 4", "7 4"]) {
+    for (ends, dashes) in profile.ends.iter().zip(["2 4", "7 4"]) {
         let style = format!("stroke=\"#888\" stroke-dasharray=\"{dashes}\"");
-        for end in [interval.low, interval.high] {
-            let at = x.pixel(scale(end.value));
-            if !end.at_bound && at.is_finite() {
+        for end in ends.iter().flatten() {
+            let at = x.pixel(scale(*end));
+            if at.is_finite() {
                 svg::path(out, &style, &[(at, 0.0), (at, HEIGHT)]);
             }
         }
     }
+    let pixels = |(value, rise): &(f64, f64)| (x.pixel(scale(*value)), y.pixel(rise.min(3.0 * HIGHEST)));
     let line: Vec<(f64, f64)> = profile
         .points
         .iter()
-        .map(|point| {
-            (
-                x.pixel(scale(point.value)),
-                y.pixel(profile.rise(point).min(3.0 * HIGHEST)),
-            )
-        })
+        .map(pixels)
         .filter(|point| point.0.is_finite() && point.1.is_finite())
         .collect();
     svg::path(out, svg::THICK, &line);

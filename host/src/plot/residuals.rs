@@ -3,105 +3,83 @@
 use std::fmt::Write;
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 
 use super::axis::Axis;
-use super::frame::{BOTTOM, CAPTION, GAP, LEFT, PANELS, POINTS, RIGHT, WIDTH, degrees, frame};
+use super::frame::{BOTTOM, CAPTION, Grid, LEFT, RIGHT, WIDTH, frame};
+use super::marks::{Data, Marks, Panel, thinned};
 use super::svg;
 use crate::engine::Material;
 
 const TOP: f64 = 10.0;
 
-/// Model less measurement in ln f, times the weight of the sample, over signed theta_s (degrees, positive forward), one panel an incident angle.
+/// Model less measurement in ln f, times the weight of the sample, over signed theta_s (degrees, positive forward), one panel an incident angle; what lies out of plane is drawn below, over its angle from the specular direction.
 ///
 /// `scale` is the standard deviation of a residual: the bands are one and two of them wide on each side.
-/// All panels share both ranges; of very many angles and samples only some are drawn, as in [`super::scan_svg`].
+/// All panels share the vertical range; of very many angles and samples only some are drawn, as in [`super::scan_svg`].
 pub fn residuals_svg(samples: &[Sample<f64>], material: &Material, scale: f64) -> String {
-    let all = by_angle(samples);
-    let panels: Vec<_> = all.iter().step_by(all.len().div_ceil(PANELS).max(1)).collect();
-    let columns = match panels.len() {
-        0 | 1 => 1,
-        2 | 4 => 2,
-        _ => 3,
-    };
-    let rows = panels.len().max(1).div_ceil(columns);
-    let width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1) as f64) / columns as f64;
-    let height = [200.0, 160.0, 130.0][columns - 1];
-    let points: Vec<Vec<(f64, f64)>> = panels
-        .iter()
-        .map(|(_, samples)| samples.iter().filter_map(|sample| point(sample, material)).collect())
-        .collect();
-    let x = Axis::angles(points.iter().flatten().map(|p| p.0), width);
+    let marks = Marks::of(&Data {
+        samples,
+        left_out: &[],
+        left_out_count: 0,
+    });
     let band = if scale.is_finite() { 2.2 * scale } else { 0.0 };
-    let far = points.iter().flatten().map(|p| p.1.abs()).fold(band, f64::max);
-    let y = Axis::linear([-far, far].into_iter(), height).upwards();
-
-    let total = TOP + rows as f64 * (height + CAPTION) + BOTTOM;
-    let mut out = String::new();
-    svg::open(&mut out, WIDTH, total);
-    let stride = samples.len().div_ceil(POINTS).max(1);
-    for (place, points) in points.iter().enumerate() {
-        let left = LEFT + (place % columns) as f64 * (width + GAP);
-        let top = TOP + (place / columns) as f64 * (height + CAPTION) + CAPTION;
-        let _ = write!(out, "\n<g transform=\"translate({left:.1} {top:.1})\">");
-        for (scales, opacity) in [(2.0, 0.12), (1.0, 0.2)] {
-            if scale.is_finite() {
-                let (above, below) = (y.pixel(scales * scale), y.pixel(-scales * scale));
-                let _ = write!(
-                    out,
-                    "<rect y=\"{above:.1}\" width=\"{width:.1}\" height=\"{:.1}\" fill=\"#f08a24\" fill-opacity=\"{opacity}\"/>",
-                    below - above
-                );
-            }
+    let residuals = samples.iter().filter_map(|sample| material.residual(sample));
+    let far = residuals.map(f64::abs).fold(band, f64::max);
+    let mut body = String::new();
+    let mut bottom = TOP;
+    for block in marks.blocks() {
+        let panels: Vec<&Panel> = block.shown().collect();
+        let grid = Grid::new(panels.len(), [200.0, 160.0, 130.0]);
+        let x = block.axis(grid.width);
+        let y = Axis::linear([-far, far].into_iter(), grid.height).upwards();
+        for (place, panel) in panels.iter().enumerate() {
+            let (left, upper) = grid.place(place, bottom);
+            let _ = write!(body, "\n<g transform=\"translate({left:.1} {upper:.1})\">");
+            bands(&mut body, &y, grid.width, scale);
+            frame(&mut body, &x, &y, grid.is_left(place), grid.is_low(place));
+            svg::text(&mut body, 0.0, -7.0, "", &block.caption(panel));
+            body.push_str("<g fill=\"none\" stroke-linecap=\"round\">");
+            let zero = y.pixel(0.0);
+            svg::path(
+                &mut body,
+                "stroke=\"#f08a24\" stroke-width=\"2\"",
+                &[(0.0, zero), (grid.width, zero)],
+            );
+            let each = panel.samples().iter().zip(&panel.measured);
+            let points =
+                each.filter_map(|(sample, point)| Some((x.pixel(point.0), y.pixel(material.residual(sample)?))));
+            svg::dots(&mut body, thinned(points.collect(), block.limit()).into_iter());
+            body.push_str("</g></g>");
         }
-        frame(&mut out, &x, &y, place % columns == 0, place + columns >= panels.len());
-        let caption = format!("{} = {}°", svg::sub("θ", "i"), degrees(panels[place].0));
-        svg::text(&mut out, 0.0, -7.0, "", &caption);
-        out.push_str("<g fill=\"none\" stroke-linecap=\"round\">");
-        let zero = y.pixel(0.0);
-        svg::path(
-            &mut out,
-            "stroke=\"#f08a24\" stroke-width=\"2\"",
-            &[(0.0, zero), (width, zero)],
+        bottom += grid.total() + BOTTOM;
+        let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
+        svg::text(
+            &mut body,
+            middle,
+            bottom - 12.0,
+            "text-anchor=\"middle\"",
+            &block.label(),
         );
-        let drawn = points.iter().step_by(stride);
-        svg::dots(&mut out, drawn.map(|p| (x.pixel(p.0), y.pixel(p.1))));
-        out.push_str("</g></g>");
+        let centre = bottom - BOTTOM - 0.5 * grid.total() + 0.5 * CAPTION;
+        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
+        let label = format!("residual of ln {}", svg::italic("f"));
+        svg::text(&mut body, 18.0, centre, &turned, &label);
     }
-    let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
-    let label = format!("scattering angle {} (degrees, positive forward)", svg::sub("θ", "s"));
-    svg::text(&mut out, middle, total - 12.0, "text-anchor=\"middle\"", &label);
-    let centre = 0.5 * (TOP + CAPTION + total - BOTTOM);
-    let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
-    svg::text(
-        &mut out,
-        18.0,
-        centre,
-        &turned,
-        &format!("residual of ln {}", svg::italic("f")),
-    );
-    out.push_str("\n</svg>\n");
-    out
+    let mut out = String::new();
+    svg::open(&mut out, WIDTH, bottom);
+    out + &body + "\n</svg>\n"
 }
 
-/// Signed theta_s in degrees and the residual; none beyond the horizon.
-fn point(sample: &Sample<f64>, material: &Material) -> Option<(f64, f64)> {
-    Some((signed_theta_s(sample), material.residual(sample)?))
-}
-
-/// Degrees, positive forward.
-pub fn signed_theta_s(sample: &Sample<f64>) -> f64 {
-    let forward = Real::sin_cos(sample.delta_phi).1 < 0.0;
-    if forward { sample.theta_s } else { -sample.theta_s }.to_degrees()
-}
-
-/// The samples by incident angle, radians, equal to a hundredth of a degree; ascending.
-pub fn by_angle(samples: &[Sample<f64>]) -> Vec<(f64, Vec<&Sample<f64>>)> {
-    let mut groups = std::collections::BTreeMap::new();
-    for sample in samples {
-        let key = (sample.theta_i.to_degrees() * 100.0).round() as i64;
-        let group = groups.entry(key).or_insert_with(|| (sample.theta_i, Vec::new()));
-        group.1.push(sample);
+/// One and two standard deviations on each side.
+fn bands(out: &mut String, y: &Axis, width: f64, scale: f64) {
+    for (scales, opacity) in [(2.0, 0.12), (1.0, 0.2)] {
+        if scale.is_finite() {
+            let (above, below) = (y.pixel(scales * scale), y.pixel(-scales * scale));
+            let _ = write!(
+                out,
+                "<rect y=\"{above:.1}\" width=\"{width:.1}\" height=\"{:.1}\" fill=\"#f08a24\" fill-opacity=\"{opacity}\"/>",
+                below - above
+            );
+        }
     }
-    groups.into_values().collect()
 }

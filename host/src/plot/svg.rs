@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use brdfit_core::real::Real;
 
+use crate::number;
+
 /// The best curve.
 pub const THICK: &str = "stroke=\"#f08a24\" stroke-width=\"3.5\"";
 /// Any other minimum.
@@ -50,6 +52,28 @@ pub fn dots(out: &mut String, points: impl Iterator<Item = (f64, f64)>) {
     out.push_str("\"/>");
 }
 
+/// Grey crosses, for what was left out.
+pub fn crosses(out: &mut String, points: impl Iterator<Item = (f64, f64)>) {
+    let mut points = points.peekable();
+    if points.peek().is_none() {
+        return;
+    }
+    out.push_str("<path stroke=\"#999\" stroke-width=\"1.1\" d=\"");
+    for (x, y) in points {
+        let _ = write!(out, "M{:.1} {:.1}l5 5m-5 0l5-5", x - 2.5, y - 2.5);
+    }
+    out.push_str("\"/>");
+}
+
+/// Small rings, for a model where a line cannot go.
+pub fn rings(out: &mut String, style: &str, points: impl Iterator<Item = (f64, f64)>) {
+    let _ = write!(out, "<path {style} style=\"stroke-width:1\" d=\"");
+    for (x, y) in points {
+        let _ = write!(out, "M{:.1} {y:.1}a2 2 0 1 0 4 0a2 2 0 1 0-4 0", x - 2.0);
+    }
+    out.push_str("\"/>");
+}
+
 /// The step from the last point, in tenths of a pixel, to `point`.
 fn relative(last: &mut (i64, i64), point: (f64, f64)) -> String {
     let tenths = |v: f64| (v * 10.0).round() as i64;
@@ -78,30 +102,9 @@ pub fn sup(exponent: &str) -> String {
 
 /// A number with four digits, as a power of ten where that is shorter.
 pub fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    if !(1e-3..1e4).contains(&value.abs()) {
-        return scientific(value);
-    }
-    let decimals = (3 - log10(value.abs()).floor() as i32).max(0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').into()
-    } else {
-        text
-    }
-}
-
-/// A number with four digits and a power of ten.
-pub fn scientific(value: f64) -> String {
-    let text = format!("{value:.3e}");
-    match text.split_once('e') {
-        Some((mantissa, exponent)) => {
-            let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-            format!("{mantissa} × 10{}", sup(&exponent.replace('-', "−")))
-        }
-        None => text,
+    match number::set(&number::four(value)) {
+        (mantissa, Some(exponent)) => format!("{mantissa} × 10{}", sup(&exponent)),
+        (plain, None) => plain,
     }
 }
 

@@ -6,7 +6,6 @@ use super::axis::Axis;
 use super::frame::frame;
 use super::svg;
 use super::svg::log10;
-use crate::engine::Minimum;
 
 /// Sizes in pixels.
 const WIDTH: f64 = 900.0;
@@ -17,13 +16,24 @@ const BOTTOM: f64 = 50.0;
 const GAP: f64 = 34.0;
 const HEIGHT: f64 = 240.0;
 
+/// A distinct minimum as the starts met it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Met {
+    /// Its MSE^2 (Eq. 17).
+    pub mse2: f64,
+    /// How many starts ended in it.
+    pub hits: u32,
+    /// The first of these.
+    pub first_start: u64,
+}
+
 /// Left, the final MSE^2 (Eq. 17) of each start in ascending order; right, the least of the first k of them over k.
 ///
 /// Each start counts with the distinct minimum that it ended in, whose MSE^2 is its own to 1 %.
-pub fn waterfall_svg(minima: &[Minimum], starts: u32) -> String {
+pub fn waterfall_svg(minima: &[Met], starts: u32) -> String {
     let width = (WIDTH - LEFT - RIGHT - GAP) / 2.0;
     // An exact fit has no logarithm.
-    let height = |minimum: &Minimum| log10(minimum.mse2.max(1e-40));
+    let height = |minimum: &Met| log10(minimum.mse2.max(1e-40));
     let y = Axis::logarithm(minima.iter().map(height), HEIGHT);
     let rank = Axis::linear([0.0, f64::from(starts)].into_iter(), width);
     let count = Axis::logarithm([0.0, log10(f64::from(starts))].into_iter(), width).rightwards();
@@ -32,7 +42,7 @@ pub fn waterfall_svg(minima: &[Minimum], starts: u32) -> String {
         .iter()
         .flat_map(|minimum| (0..minimum.hits).map(|_| height(minimum)));
     let sorted = ends.enumerate().map(|(rank, height)| (1.0 + rank as f64, height));
-    let mut by_start: Vec<&Minimum> = minima.iter().collect();
+    let mut by_start: Vec<&Met> = minima.iter().collect();
     by_start.sort_by_key(|minimum| minimum.first_start);
     let mut best: Vec<(f64, f64)> = Vec::new();
     for minimum in by_start {

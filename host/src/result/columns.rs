@@ -10,7 +10,7 @@ use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
 use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
 use crate::names;
-use crate::output::shortest;
+use crate::number::shortest;
 use crate::terms::term_names;
 
 /// A column of the tables.
@@ -293,6 +293,13 @@ fn of_scan() -> Vec<Column> {
         }),
         flag("energy_conserved", conserved, Otherwise, |row| {
             Some(row.scan?.derived.iter().all(Derived::conserves_energy))
+        }),
+        text("not_used", "columns of the file that are not used", Otherwise, |row| {
+            Some(row.scan?.about.unused.join("+"))
+        }),
+        text("hints", "what a person would say of the fit", Otherwise, |row| {
+            let hints = row.scan?.hints.iter().map(|hint| hint.text.as_str());
+            Some(hints.collect::<Vec<_>>().join(" | "))
         }),
         number("elapsed_s", "s", "time of the search", Time, |row| {
             Some(row.scan?.elapsed?.as_secs_f64())

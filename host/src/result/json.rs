@@ -2,6 +2,7 @@
 
 mod by_name;
 mod choice;
+pub mod provenance;
 mod uncertainty;
 
 use serde::ser::SerializeMap;
@@ -10,11 +11,13 @@ use serde::{Serialize, Serializer};
 use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
+use crate::analysis::hints::Hint;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
 use crate::output;
 pub use by_name::ByName;
 use choice::{Selection, selection};
+use provenance::{Provenance, provenance};
 use uncertainty::{AtAngle, Known, at_angle, known};
 
 #[derive(Serialize)]
@@ -41,6 +44,10 @@ struct Document<'a> {
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
     evaluations: Evaluations,
+    /// What a person would say.
+    #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
+    hints: &'a [Hint],
+    provenance: Provenance<'a>,
     #[serde(flatten)]
     time: Columns<'a>,
 }
@@ -106,6 +113,8 @@ fn document(scan: &FittedScan) -> Document<'_> {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
         },
+        hints: &scan.hints,
+        provenance: provenance(&scan.about, Some(&scan.options)),
         time: Columns(scan, Json::Time),
     }
 }

@@ -9,29 +9,29 @@ use crate::analysis::fit::{AngleOfIncidence, FittedScan};
 use crate::engine::{Minimum, Outcome};
 use crate::input::{label, left_out};
 use crate::names;
-use crate::number::digits;
+use crate::number::six;
 use crate::terms::term_names;
 
 /// A page for people.
 pub fn text(reports: &[FittedScan], minima: bool) -> String {
-    let pages: Vec<String> = reports.iter().map(|report| page(report, minima)).collect();
+    let pages: Vec<String> = reports.iter().map(|fit| page(fit, minima)).collect();
     pages.join("\n")
 }
 
-fn page(report: &FittedScan, minima: bool) -> String {
-    let (outcome, options) = (&report.outcome, &report.options);
+fn page(fit: &FittedScan, minima: bool) -> String {
+    let (outcome, options) = (&fit.outcome, &fit.options);
     let mut page = String::new();
     let mut line = |text: String| page.push_str(&(text + "\n"));
-    line(label(&report.file, report.scan.as_deref()));
-    line(format!("  read as    {}", report.read_as));
-    for note in &report.about.notes {
+    line(label(&fit.file, fit.scan.as_deref()));
+    line(format!("  read as    {}", fit.read_as));
+    for note in &fit.about.notes {
         line(format!("  note       {note}"));
     }
-    if !report.about.unused.is_empty() {
-        line(format!("  not used   {}", report.about.unused()));
+    if !fit.about.unused.is_empty() {
+        line(format!("  not used   {}", fit.about.unused()));
     }
-    line(format!("  samples    {}{}", outcome.samples, angles(&report.angles)));
-    if let Some(summary) = left_out::summary(&report.left_out) {
+    line(format!("  samples    {}{}", outcome.samples, angles(&fit.angles)));
+    if let Some(summary) = left_out::summary(&fit.left_out) {
         line(format!("  left out   {summary}"));
     }
     line(format!(
@@ -56,23 +56,23 @@ fn page(report: &FittedScan, minima: bool) -> String {
         } else {
             format!(" {}", parameter.unit)
         };
-        let value = digits(outcome.params[index]);
+        let value = six(outcome.params[index]);
         line(format!("    {:<8} {value:>13}{unit}{remark}", parameter.name));
     }
-    line(format!("  MSE^2      {}", digits(outcome.mse2)));
+    line(format!("  MSE^2      {}", six(outcome.mse2)));
     line(format!(
         "  rms ln f   {} ({:.2} %)",
-        digits(outcome.rms_ln),
+        six(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
-    if let Some(chi2) = report.chi2 {
+    if let Some(chi2) = fit.chi2 {
         let degrees = outcome.uncertainty.degrees_of_freedom;
-        line(format!("  chi^2      {} of {degrees} degrees of freedom", digits(chi2)));
+        line(format!("  chi^2      {} of {degrees} degrees of freedom", six(chi2)));
     }
     if let Some(robust) = &outcome.robust {
         line(format!(
             "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",
-            digits(robust.scale)
+            six(robust.scale)
         ));
     }
     line(format!(
@@ -89,15 +89,18 @@ fn page(report: &FittedScan, minima: bool) -> String {
         "  passes     {} with derivatives, {} without",
         outcome.evaluations.linearize, outcome.evaluations.cost
     ));
-    if let Some(elapsed) = report.elapsed {
+    if let Some(elapsed) = fit.elapsed {
         line(format!("  time       {:.4} s", elapsed.as_secs_f64()));
     }
-    for choice in report.choice.iter().flat_map(choice::lines) {
+    for choice in fit.choice.iter().flat_map(choice::lines) {
         line(choice);
     }
-    let weighted = report.read_as.weighted;
-    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &report.derived, weighted) {
+    let weighted = fit.read_as.weighted;
+    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &fit.derived, weighted) {
         line(known);
+    }
+    for hint in &fit.hints {
+        line(format!("  hint       {}", hint.text));
     }
     if minima {
         page += &minima_table(outcome, &outcome.minima);
@@ -108,7 +111,7 @@ fn page(report: &FittedScan, minima: bool) -> String {
 /// The angles of incidence, with their rms where there are several.
 fn angles(angles: &[AngleOfIncidence]) -> String {
     const LISTED: usize = 12;
-    let degrees = |angle: &AngleOfIncidence| digits(angle.theta_i.to_degrees());
+    let degrees = |angle: &AngleOfIncidence| six(angle.theta_i.to_degrees());
     match angles {
         [] => String::new(),
         [one] => format!(" at theta_i = {} deg", degrees(one)),
@@ -124,7 +127,7 @@ fn angles(angles: &[AngleOfIncidence]) -> String {
                 "\n    theta_i {:>8} deg: {:>4} samples, rms ln f {}",
                 degrees(angle),
                 angle.samples,
-                digits(angle.rms_ln)
+                six(angle.rms_ln)
             );
             list
         }),
@@ -138,9 +141,9 @@ fn minima_table(outcome: &Outcome, minima: &[Minimum]) -> String {
     }
     table += "  hits  first start\n";
     for (place, minimum) in minima.iter().enumerate() {
-        let _ = write!(table, "  {:>3} {:>12}", place + 1, digits(minimum.mse2));
+        let _ = write!(table, "  {:>3} {:>12}", place + 1, six(minimum.mse2));
         for &value in minimum.params.iter() {
-            let _ = write!(table, " {:>12}", digits(value));
+            let _ = write!(table, " {:>12}", six(value));
         }
         let _ = writeln!(table, " {:>5} {:>12}", minimum.hits, minimum.first_start);
     }

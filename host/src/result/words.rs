@@ -3,7 +3,7 @@
 use crate::analysis::choose::Choice;
 use crate::analysis::derived::Value;
 use crate::analysis::undetermined::Undetermined;
-use crate::number::{four, percent, short};
+use crate::number::{four, percent, two};
 use crate::terms::term_names;
 
 use brdfit_core::brdf::ALL;
@@ -43,7 +43,7 @@ pub fn choice(choice: &Choice) -> String {
 
 /// A value with its standard error, as "0.5123 +- 0.0021".
 pub fn shown(value: Value) -> String {
-    format!("{} +- {}", four(value.value), short(value.stderr))
+    format!("{} +- {}", four(value.value), two(value.stderr))
 }
 
 /// "a", "a and b", "a, b and c".

@@ -31,6 +31,10 @@ impl<R: Real> Problem<R, P> for Timed<'_, R> {
         self.tick();
         self.scan.linearize(x)
     }
+    // Without it a fit takes about twice the passes.
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
+        self.scan.bend(x, step, to)
+    }
 }
 
 pub fn run(out: &mut dyn Write) -> fmt::Result {

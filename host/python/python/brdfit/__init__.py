@@ -85,7 +85,7 @@ def fit_many(
     brdf : measured BRDF in sr^-1, above 0; shape (scans, samples), or (..., samples).
     sigma : standard deviations of brdf in sr^-1, as for `fit`; any shape that broadcasts to that of `brdf`.
     terms, bounds, seed, method : as for `fit`, the same for every scan.
-    drop_invalid : leaves out samples that are not valid, such as NaN; a scan with too few others has NaN for a result and is no success.
+    drop_invalid : leaves out samples that are not valid, such as NaN; a scan with too few others has NaN for a result and does not count as a success.
     threads : number of threads, which changes no bit; by default one for each core.
 
     Raises
@@ -152,7 +152,7 @@ def _array(name: str, value: ArrayLike) -> NDArray[np.float64]:
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is no array of numbers: {error}") from None
+        raise ValueError(f"{name} is not an array of numbers: {error}") from None
 
 
 def _azimuth(delta_phi: ArrayLike | None) -> NDArray[np.float64]:

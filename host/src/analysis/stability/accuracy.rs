@@ -94,9 +94,9 @@ pub fn errors(samples: &[Sample<f64>], terms: u8, params: [f64; 6]) -> (Errors, 
     (double, single)
 }
 
-type Row = ([f64; 7], [f64; 7], Option<[f64; 7]>);
+type Compared = ([f64; 7], [f64; 7], Option<[f64; 7]>);
 
-fn largest<R: Real>(terms: u8, params: [f64; 6], rows: impl Iterator<Item = Row> + Clone) -> Errors {
+fn largest<R: Real>(terms: u8, params: [f64; 6], rows: impl Iterator<Item = Compared> + Clone) -> Errors {
     let counts = |q: usize, exact| (q == 0 || has(terms, q - 1)) && is_promised::<R>(q, params, exact);
     let mut column = [0.0f64; 7];
     for (exact, ..) in rows.clone() {

@@ -102,7 +102,7 @@ impl Assessment {
 /// Fits a scan in both number types with the model and terms of `options` and compares.
 ///
 /// # Errors
-/// As [`engine::fit`]; [`FitError::Sample`] also where a sample is no number of f32.
+/// As [`engine::fit`]; [`FitError::Sample`] also where a sample is not a number of f32.
 pub fn assess(name: &str, samples: &[Sample<f64>], options: &FitOptions) -> Result<Assessment, FitError> {
     let double = engine::fit(samples, options)?;
     let precision = Precision::F32;

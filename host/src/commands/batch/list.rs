@@ -4,13 +4,13 @@ use std::collections::HashSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::own;
 use crate::error::{Error, shown};
 use crate::input::bytes::{self, STDIN};
+use crate::records::own;
 
 /// The files that the arguments name, in their order, each once: what a folder or a pattern stands for is sorted by name.
 ///
-/// Results, parts and finished fits of batches to `out` are no scans, even if they are in a folder or match a pattern.
+/// Results, parts and finished fits of batches to `out` are not scans, even if they are in a folder or match a pattern.
 ///
 /// # Errors
 /// A name that stands for no file, or a folder that cannot be listed.
@@ -18,10 +18,10 @@ pub fn files(arguments: &[PathBuf], out: &Path, input: &mut dyn Read) -> Result<
     let mut all = Vec::new();
     for argument in arguments {
         let text = argument.to_string_lossy();
-        if let Some(list) = text.strip_prefix('@') {
+        if let Some(list) = name(argument) {
             all.extend(listed(list, input)?);
         } else if text == STDIN {
-            return Err(Error::new("- alone stands for no scans").help("give a list of files on standard input as @-"));
+            return Err(Error::new("- alone does not name scans").help("give a list of files on standard input as @-"));
         } else if argument.is_dir() {
             all.extend(folder(argument, out)?);
         } else if argument.exists() || !text.contains(['*', '?', '[']) {
@@ -40,16 +40,21 @@ pub fn files(arguments: &[PathBuf], out: &Path, input: &mut dyn Read) -> Result<
     Ok(all)
 }
 
+/// The file that `@LIST` names.
+pub fn name(argument: &Path) -> Option<&Path> {
+    argument.to_str()?.strip_prefix('@').map(Path::new)
+}
+
 /// One name a line; blank lines and those that begin with `#` do not count.
-fn listed(list: &str, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
-    let bytes = if list == STDIN {
+fn listed(list: &Path, input: &mut dyn Read) -> Result<Vec<PathBuf>, Error> {
+    let bytes = if list.as_os_str() == STDIN {
         bytes::of_stdin(input)?
     } else {
-        bytes::of_file(Path::new(list))?
+        bytes::of_file(list)?
     };
     let text = String::from_utf8(bytes).map_err(|_| {
-        Error::new("this is no list of file names")
-            .in_file(list)
+        Error::new("this is not a list of file names")
+            .in_file(list.display().to_string())
             .help("write one name a line, in UTF-8")
     })?;
     let lines = text
@@ -78,7 +83,7 @@ fn folder(path: &Path, out: &Path) -> Result<Vec<PathBuf>, Error> {
 fn matches(pattern: &str, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let fail =
         |what: String| Error::new(what).help("in a pattern, * ? [] stand for other characters, and ** for folders");
-    let paths = glob::glob(pattern).map_err(|error| fail(format!("'{}' is no pattern: {error}", shown(pattern))))?;
+    let paths = glob::glob(pattern).map_err(|error| fail(format!("'{}' is not a pattern: {error}", shown(pattern))))?;
     let mut files = Vec::new();
     for path in paths {
         let path = path.map_err(|error| unlisted(error.path(), error.error()))?;

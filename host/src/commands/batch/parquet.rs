@@ -10,7 +10,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
-use super::record::{RowsIn, cells};
+use crate::records::record::{RowsIn, cells};
 use crate::result::cell::{Cell, Kind};
 
 /// Rows that are in memory at once.
@@ -28,7 +28,7 @@ fn physical(kind: Kind) -> Physical {
 /// Writes the rows of a table.
 ///
 /// # Errors
-/// A row is broken, or the output can not be written.
+/// A row is broken, or the output cannot be written.
 pub fn write(columns: &[(String, Kind)], rows: RowsIn, out: &mut (dyn Write + Send)) -> io::Result<()> {
     let field = |(name, kind): &(String, Kind)| {
         let logical = match kind {
@@ -109,7 +109,7 @@ mod tests {
     use parquet::record::Field;
 
     use super::*;
-    use crate::commands::batch::record::Row;
+    use crate::records::record::Written;
 
     #[test]
     fn reads_back() {
@@ -124,7 +124,7 @@ mod tests {
             (Kind::Number, _) => Cell::Number(0.1 * row as f64),
             (Kind::Flag, _) => Cell::Flag(row.is_multiple_of(2)),
         };
-        let row = |row: usize| Ok(Row::Cells(columns.iter().map(|column| cell(row, column)).collect()));
+        let row = |row: usize| Ok(Written::Cells(columns.iter().map(|column| cell(row, column)).collect()));
         let file = tempfile::NamedTempFile::new().unwrap();
         write(&columns, &mut (0..count).map(row), &mut file.as_file()).unwrap();
         let reader = SerializedFileReader::new(file.reopen().unwrap()).unwrap();

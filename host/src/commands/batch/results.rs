@@ -5,10 +5,10 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
-use super::record::{Record, Row, Rows, RowsIn, cells};
 use crate::error::Error;
 use crate::input::STDIN;
 use crate::output::write_row;
+use crate::records::record::{Record, Rows, RowsIn, Written, cells};
 use crate::result::cell::{Cell, Kind};
 
 /// The form of the file of results.
@@ -36,10 +36,11 @@ impl Form {
             (None, Some("parquet")) => Form::Parquet,
             (None, None) if out.as_os_str() == STDIN => Form::Csv,
             _ => {
-                return Err(
-                    Error::new(format!("the name {} tells no form of results", out.display()))
-                        .help("let it end in .csv, .json or .parquet, or add --format"),
-                );
+                return Err(Error::new(format!(
+                    "the name {} does not say in which form results are wanted",
+                    out.display()
+                ))
+                .help("let it end in .csv, .json or .parquet, or add --format"));
             }
         };
         if form == Form::Parquet && !cfg!(feature = "parquet") {
@@ -61,7 +62,7 @@ impl Form {
 /// Writes the rows of records, which come in order.
 ///
 /// # Errors
-/// A record is broken, or the output can not be written.
+/// A record is broken, or the output cannot be written.
 pub fn write(
     form: Form,
     columns: &[(String, Kind)],
@@ -96,7 +97,7 @@ fn csv(columns: &[(String, Kind)], rows: RowsIn, out: &mut dyn Write) -> io::Res
 fn json(rows: RowsIn, out: &mut dyn Write) -> io::Result<()> {
     let mut before = "[\n  ";
     for row in rows {
-        let Row::Object(object) = row? else {
+        let Written::Object(object) = row? else {
             return Err(io::Error::other("a row of a table is no JSON object"));
         };
         write!(out, "{before}{}", object.replace('\n', "\n  "))?;

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::journal::Journal;
-use super::record::{Fitted, Line, Record, Row, Rows, fingerprint};
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
 use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
+use crate::records::journal::Journal;
+use crate::records::record::{Line, Record, Rows, ScanRecord, Written, fingerprint};
 use crate::result;
 use crate::result::cell::{Cell, Kind};
 use crate::result::columns::{Column, Json, of_fits};
@@ -61,7 +61,7 @@ fn lock(journal: &Mutex<Journal>) -> std::sync::MutexGuard<'_, Journal> {
 }
 
 /// The scans of a file, fitted; `None` after an interrupt.
-fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fitted>> {
+fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<ScanRecord>> {
     let name = path.display().to_string();
     let one = |measurement: Measurement| {
         if job.interrupt.load(Ordering::Relaxed) {
@@ -69,6 +69,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fi
         }
         Some(match fit(&measurement, &job.options) {
             Ok(scan) => fitted(job, scan, &measurement),
+            Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
         })
     };
@@ -79,14 +80,14 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Fi
     }
 }
 
-fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> Fitted {
+fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> ScanRecord {
     // Results have the same bits each time, so no time is part of them.
     scan.elapsed = None;
     let row = match job.rows {
-        Rows::Objects => Row::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
-        Rows::Cells => Row::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),
+        Rows::Objects => Written::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
+        Rows::Cells => Written::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),
     };
-    Fitted {
+    ScanRecord {
         row,
         line: Ok(line(&scan, measurement)),
     }
@@ -104,11 +105,11 @@ fn line(scan: &FittedScan, measurement: &Measurement) -> Line {
     }
 }
 
-/// The row of a scan that can not be read or fitted.
-fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
+/// The row of a scan that cannot be read or fitted.
+fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> ScanRecord {
     let row = match job.rows {
         Rows::Objects => {
-            Row::Object(serde_json::json!({ "file": file, "scan": scan, "error": error.to_string() }).to_string())
+            Written::Object(serde_json::json!({ "file": file, "scan": scan, "error": error.to_string() }).to_string())
         }
         Rows::Cells => {
             let known = |column: &Column| match column.name.as_str() {
@@ -116,10 +117,10 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> Fitted {
                 "scan" => scan.map_or(Cell::Empty, |scan| Cell::Text(scan.to_string())),
                 _ => Cell::Empty,
             };
-            Row::Cells(cells(&job.models, known, Cell::Text(error.to_string())))
+            Written::Cells(cells(&job.models, known, Cell::Text(error.to_string())))
         }
     };
-    Fitted {
+    ScanRecord {
         row,
         line: Err(error.to_string()),
     }

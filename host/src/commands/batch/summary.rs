@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::record::{Line, Record};
 use crate::error::Error;
-use crate::output::shortest;
+use crate::number::shortest;
+use crate::records::record::{Line, Record};
 use crate::streams::{Ended, Streams};
 
 /// Lines that are printed; means are over all.
@@ -61,7 +61,7 @@ impl Summary {
 
     /// Prints the page, if it is `shown`, and gives what failed.
     pub fn tell(&self, shown: bool, streams: &mut Streams) -> Ended {
-        // The results are written, and that nobody reads this is no failure of theirs.
+        // The results are written; it does not matter if nobody reads this.
         if shown && !streams.quiet {
             let _ = streams.output.write_all(self.text().as_bytes());
         }

@@ -5,17 +5,25 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
-use crate::output::{self, shortest, write_row};
+use crate::number::shortest;
+use crate::output::{self, write_row};
+use crate::result::json::provenance::Provenance;
 
 #[derive(Serialize)]
 struct Document<'a> {
     seeds: u32,
     scans: &'a [ScanStudy],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    provenance: Option<Provenance<'a>>,
 }
 
-/// One object with everything.
-pub fn json(scans: &[ScanStudy], seeds: u32) -> String {
-    output::json(&Document { seeds, scans })
+/// One object with everything, and where the scan is from if it was read.
+pub fn json(scans: &[ScanStudy], seeds: u32, provenance: Option<Provenance>) -> String {
+    output::json(&Document {
+        seeds,
+        scans,
+        provenance,
+    })
 }
 
 /// One row a point of the grid and quantity; a cell is empty where too few runs have begun.
@@ -77,7 +85,7 @@ pub fn text(scans: &[ScanStudy], seeds: u32) -> String {
         if place > 0 {
             out.push('\n');
         }
-        // Writing to a String can not fail.
+        // Writing to a String cannot fail.
         let _ = writeln!(
             out,
             "{}: {} samples, least MSE^2 {:.6e}; medians of {seeds} {}, one thread, fastest of {REPEATS} runs",

@@ -1,7 +1,8 @@
 //! What the command found about one scan.
 
 use crate::analysis::profile::Profile;
-use crate::engine::{Outcome, Values};
+use crate::engine::{FitOptions, Outcome, Values};
+use crate::input::About;
 
 /// Profiles and copies of one scan.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Findings {
     pub copies: Vec<Values>,
     /// The number of copies at each end of an interval whose thresholds are measured; 0 for those of the F test.
     pub calibrated: u32,
-    /// The seed of the search and of the copies.
-    pub seed: u64,
+    /// How the scan was fitted; the seed is that of the copies too.
+    pub options: FitOptions,
+    /// How it was read.
+    pub about: About,
 }

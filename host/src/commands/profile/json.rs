@@ -8,6 +8,7 @@ use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{Interval, Profile};
 use crate::engine::Outcome;
 use crate::output;
+use crate::result::json::provenance::{Provenance, provenance};
 
 #[derive(Serialize)]
 struct Document<'a> {
@@ -21,6 +22,7 @@ struct Document<'a> {
     bootstrap: Option<Bootstrap>,
     /// Copies at each end of an interval whose thresholds are measured; null for those of the F test.
     calibrated: Option<u32>,
+    provenance: Provenance<'a>,
 }
 
 #[derive(Serialize)]
@@ -81,10 +83,11 @@ pub fn write(findings: &Findings) -> String {
             .iter()
             .map(|profile| parameter(profile, &findings.outcome))
             .collect(),
+        provenance: provenance(&findings.about, Some(&findings.options)),
         calibrated: Some(findings.calibrated).filter(|&copies| copies > 0),
         bootstrap: (!findings.copies.is_empty()).then(|| Bootstrap {
             copies: findings.copies.len(),
-            seed: findings.seed,
+            seed: findings.options.seed,
             parameters: findings
                 .profiles
                 .iter()

@@ -6,7 +6,7 @@ use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{End, Interval};
-use crate::number::{percent, short, significant};
+use crate::number::{percent, significant, two};
 
 /// The table of the intervals.
 pub fn write(findings: &Findings) -> String {
@@ -28,10 +28,13 @@ pub fn write(findings: &Findings) -> String {
     let mut notes = String::new();
     for profile in &findings.profiles {
         let index = profile.index;
-        let [one, two] = profile.intervals.map(|interval| shown(&interval));
+        let [narrow, wide] = profile.intervals.map(|interval| shown(&interval));
         let error = known.stderr[index];
-        let error = if error > 0.0 { short(error) } else { "-".into() };
-        row(&mut page, [name(index), &six(profile.best.value), &error, &one, &two]);
+        let error = if error > 0.0 { two(error) } else { "-".into() };
+        row(
+            &mut page,
+            [name(index), &five(profile.best.value), &error, &narrow, &wide],
+        );
         if profile.best.cost < findings.outcome.cost * (1.0 - 1e-6) {
             let _ = writeln!(
                 notes,
@@ -46,7 +49,7 @@ pub fn write(findings: &Findings) -> String {
             page,
             "\n  bootstrap: {} copies, seed {}",
             findings.copies.len(),
-            findings.seed
+            findings.options.seed
         );
         for profile in &findings.profiles {
             let index = profile.index;
@@ -56,9 +59,9 @@ pub fn write(findings: &Findings) -> String {
                     quantile(&values, 0.5 - 0.5 * level),
                     quantile(&values, 0.5 + 0.5 * level),
                 );
-                format!("{} to {}", six(low), six(high))
+                format!("{} to {}", five(low), five(high))
             });
-            row(&mut page, [name(index), &six(quantile(&values, 0.5)), "", &one, &two]);
+            row(&mut page, [name(index), &five(quantile(&values, 0.5)), "", &one, &two]);
         }
     }
     page.push('\n');
@@ -66,17 +69,18 @@ pub fn write(findings: &Findings) -> String {
     page += "  The 95 % interval holds the values at which the best fit of the others is not refuted by ";
     page += &match findings.calibrated {
         0 => "an F test.\n".to_string(),
-        copies => format!("{copies} copies, seed {}.\n", findings.seed),
+        copies => format!("{copies} copies, seed {}.\n", findings.options.seed),
     };
     page += "  (bound) marks an end that the bound of the parameter sets, not the data.\n";
     page
 }
 
 fn shown(interval: &Interval) -> String {
-    let end = |end: End| six(end.value) + if end.at_bound { " (bound)" } else { "" };
+    let end = |end: End| five(end.value) + if end.at_bound { " (bound)" } else { "" };
     format!("{} to {}", end(interval.low), end(interval.high))
 }
 
-fn six(x: f64) -> String {
-    significant(x, 4)
+/// Five digits fit the columns.
+fn five(x: f64) -> String {
+    significant(x, 5)
 }

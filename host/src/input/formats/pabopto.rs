@@ -113,7 +113,7 @@ fn remark(line: &str, header: &mut Header) -> Result<(), Error> {
     };
     let angle = |text: &str| {
         text.parse::<f64>()
-            .map_err(|_| Error::new(format!("{key} is '{}', which is no angle", shown(value))).help("give degrees"))
+            .map_err(|_| Error::new(format!("{key} is '{}', which is not an angle", shown(value))).help("give degrees"))
     };
     match key {
         "incident_angle" => {

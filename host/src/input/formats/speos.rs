@@ -288,7 +288,7 @@ impl Table {
     fn take(&self, scan: &mut RawScan, theta_i: f64, scale: f64, quantity: Stored, line: u64) -> Result<(), Error> {
         if !(scale > 0.0 && scale.is_finite()) {
             return Err(Error::new(format!(
-                "the reflectance at theta_i = {theta_i} can not make its values absolute: both must be above 0"
+                "the reflectance at theta_i = {theta_i} cannot make its values absolute: both must be above 0"
             ))
             .at_line(line)
             .help("give the reflectance in percent, or delete the angle of incidence"));

@@ -11,11 +11,11 @@ use crate::terms::term_names;
 pub struct Selection {
     criterion: &'static str,
     sentence: String,
-    candidates: Vec<Row>,
+    candidates: Vec<JsonCandidate>,
 }
 
 #[derive(Serialize)]
-struct Row {
+struct JsonCandidate {
     terms: Vec<&'static str>,
     parameters: usize,
     cost: f64,
@@ -26,7 +26,7 @@ struct Row {
 
 /// For the JSON contract.
 pub fn selection(choice: &Choice) -> Selection {
-    let candidate = |one: &Candidate| Row {
+    let candidate = |one: &Candidate| JsonCandidate {
         terms: term_names(one.terms),
         parameters: one.parameters,
         cost: one.cost,

@@ -1,7 +1,7 @@
 //! How the terms were chosen, for the page of a fit.
 
 use crate::analysis::choose::{Candidate, Choice};
-use crate::number::short;
+use crate::number::two;
 use crate::result::words;
 use crate::terms::term_names;
 
@@ -15,7 +15,7 @@ pub fn lines(choice: &Choice) -> Vec<String> {
     ];
     lines.extend(choice.candidates.iter().map(|one| {
         let names = term_names(one.terms).join(", ");
-        let test = one.p_value.map_or_else(String::new, |p| format!("p = {}", short(p)));
+        let test = one.p_value.map_or_else(String::new, |p| format!("p = {}", two(p)));
         let (aicc, bic) = (one.aicc - aicc, one.bic - bic);
         let mark = if one.terms == choice.terms { '*' } else { ' ' };
         let cost = format!("{:.4e}", one.cost);

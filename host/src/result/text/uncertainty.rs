@@ -6,7 +6,7 @@ use crate::analysis::derived::{Derived, Value};
 use crate::analysis::undetermined::undetermined;
 use crate::engine::Material;
 use crate::engine::uncertainty::Uncertainty;
-use crate::number::{percent, short};
+use crate::number::{percent, six, two};
 use crate::result::words::{sentence, shown};
 
 /// Correlations from this on are listed.
@@ -17,7 +17,7 @@ const LISTED: usize = 12;
 /// What stands behind the value of parameter `index`.
 pub fn remark(index: usize, known: &Uncertainty) -> String {
     match known.places[index] {
-        Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", short(known.stderr[index])),
+        Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", two(known.stderr[index])),
         Some(Place::Inside) | None => String::new(),
         Some(Place::Lower | Place::Upper) => "  at its bound".into(),
         Some(Place::Fixed) => "  fixed".into(),
@@ -43,12 +43,12 @@ pub fn lines(material: &Material, known: &Uncertainty, derived: &[Derived], weig
     lines.push(format!(
         "  known      residual {}, {} degrees of freedom, condition {}",
         if weighted {
-            short(known.scale) + " of the weights' unit"
+            two(known.scale) + " of the weights' unit"
         } else {
             percent(known.scale)
         },
         known.degrees_of_freedom,
-        short(known.condition)
+        two(known.condition)
     ));
     for what in undetermined(material, known, derived) {
         lines.push(format!("    {}", sentence(&what)));
@@ -110,7 +110,7 @@ fn table(derived: &[Derived]) -> Vec<String> {
             "  ABOVE 1: energy is not conserved"
         };
         lines.push(row([
-            short(at.theta_i.to_degrees()),
+            six(at.theta_i.to_degrees()),
             at.rho_s_f.map_or_else(none, shown),
             at.rho_v_f.map_or_else(none, shown),
             peak.map_or_else(none, |peak| {

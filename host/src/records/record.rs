@@ -46,8 +46,8 @@ pub struct Record {
     pub index: usize,
     /// [`fingerprint`] of its contents.
     pub contents: u64,
-    /// Its scans in order; one that says why, if the file can not be read.
-    pub scans: Vec<Fitted>,
+    /// Its scans in order; one that says why, if the file cannot be read.
+    pub scans: Vec<ScanRecord>,
 }
 
 impl Record {
@@ -59,9 +59,9 @@ impl Record {
 
 /// One scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fitted {
+pub struct ScanRecord {
     /// Its row of the results.
-    pub row: Row,
+    pub row: Written,
     /// Its line of Table 3, or why it has none.
     pub line: Result<Line, String>,
 }
@@ -69,7 +69,7 @@ pub struct Fitted {
 /// A row of the results in one of the forms of [`Rows`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Row {
+pub enum Written {
     /// One cell a column.
     Cells(Vec<Cell>),
     /// A JSON object.
@@ -77,16 +77,16 @@ pub enum Row {
 }
 
 /// Rows as they come.
-pub type RowsIn<'a> = &'a mut dyn Iterator<Item = io::Result<Row>>;
+pub type RowsIn<'a> = &'a mut dyn Iterator<Item = io::Result<Written>>;
 
 /// The cells of a row of a table.
 ///
 /// # Errors
 /// It is an object.
-pub fn cells(row: Row) -> io::Result<Vec<Cell>> {
+pub fn cells(row: Written) -> io::Result<Vec<Cell>> {
     match row {
-        Row::Cells(cells) => Ok(cells),
-        Row::Object(_) => Err(io::Error::other("a JSON object is no row of a table")),
+        Written::Cells(cells) => Ok(cells),
+        Written::Object(_) => Err(io::Error::other("a JSON object is not a row of a table")),
     }
 }
 
@@ -107,7 +107,7 @@ pub struct Line {
     pub improvement_potential: f64,
 }
 
-/// FNV-1a of bytes: finds a file that was changed, and is no protection against one who wants to deceive.
+/// FNV-1a of bytes: finds a file that was changed; it does not protect against forgery.
 pub fn fingerprint(bytes: &[u8]) -> u64 {
     let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)
@@ -196,7 +196,7 @@ pub fn agree(found: &Head, wanted: &Head, file: &Path, help: &str) -> Result<(),
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(super) mod tests {
     use super::*;
 
     /// Of a batch of one file.
@@ -217,8 +217,8 @@ pub mod tests {
         let record = Record {
             index: 3,
             contents: 17,
-            scans: vec![Fitted {
-                row: Row::Cells(vec![Cell::Text("a.csv".into()), Cell::Number(0.25)]),
+            scans: vec![ScanRecord {
+                row: Written::Cells(vec![Cell::Text("a.csv".into()), Cell::Number(0.25)]),
                 line: Err("no".into()),
             }],
         };

@@ -1,6 +1,6 @@
 //! The records of an unfinished run, in the order in which the files were finished; a run that is killed leaves all but perhaps its last line.
 //!
-//! Nothing in the file is ever taken away: what is no whole record is passed over, and said.
+//! Nothing in the file is ever taken away: a record that is not whole is passed over, and the user is told.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
@@ -17,7 +17,7 @@ pub struct Journal {
     /// Of each file of the batch, where its last record is.
     places: Vec<Option<Place>>,
     end: u64,
-    /// The lines that are no whole records; the first line of a file is 1.
+    /// The lines whose records are not whole; the first line of a file is 1.
     pub damaged: Vec<u64>,
 }
 
@@ -141,7 +141,7 @@ impl Journal {
             |error: std::io::Error| Error::new(format!("cannot be read: {error}")).in_file(path.display().to_string());
         let mut lines = BufReader::new(&self.file);
         let Some((found, length)) = record::head(&mut lines).map_err(fail)? else {
-            return Err(Error::new("this is no file of finished fits")
+            return Err(Error::new("this is not a file of finished fits")
                 .in_file(path.display().to_string())
                 .help("move it elsewhere, or take another --out"));
         };
@@ -191,7 +191,7 @@ pub fn take_over(part: &Path, journal: &Path, head: &Head) -> Result<(), Error> 
     }
     let found = File::open(part).and_then(|file| record::head(&mut BufReader::new(file)));
     let Some((found, _)) = found.map_err(fail)? else {
-        return Err(Error::new("this is no part of a batch")
+        return Err(Error::new("this is not a part of a batch")
             .in_file(part.display().to_string())
             .help("move it elsewhere, or take another --out"));
     };

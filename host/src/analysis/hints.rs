@@ -1,0 +1,204 @@
+//! What a person who knows scatterometers would say of a scan or a fit, each from the data.
+
+mod offset;
+mod shadow;
+
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
+use serde::Serialize;
+
+use crate::analysis::derived::Derived;
+use crate::engine::{FitOptions, Outcome};
+use crate::input::units::{Forward, Quantity};
+use crate::input::{Measurement, plane, side};
+
+/// A hint.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hint {
+    /// What it is about, as a word for programs.
+    pub about: &'static str,
+    /// What a person would say.
+    pub text: String,
+}
+
+impl Hint {
+    fn new(about: &'static str, text: String) -> Hint {
+        Hint { about, text }
+    }
+}
+
+/// A residual from which on another model is worth a try.
+const LARGE: f64 = 0.3;
+
+/// What the samples alone tell, before any fit.
+pub fn of_scan(measurement: &Measurement) -> Vec<Hint> {
+    let mut hints = before_fit(measurement);
+    hints.extend(offset::of_peaks(&measurement.samples).map(|degrees| {
+        Hint::new(
+            "offset",
+            format!("the peaks are at theta_i {degrees:+.2} deg at every angle of incidence: is the zero of an axis off by that?"),
+        )
+    }));
+    hints
+}
+
+/// What the samples tell apart from their peaks.
+fn before_fit(measurement: &Measurement) -> Vec<Hint> {
+    let mut hints = Vec::new();
+    hints.extend(side::other_side(&measurement.samples).map(|times| {
+        let other = match measurement.read_as.forward {
+            Forward::Positive => "negative",
+            Forward::Negative => "positive",
+        };
+        Hint::new(
+            "side",
+            format!(
+                "opposite to the specular direction the values are {times:.2} times those around it: --forward {other}?"
+            ),
+        )
+    }));
+    hints.extend(shadow::width(&measurement.samples).map(|degrees| {
+        Hint::new(
+            "shadow",
+            format!("the values drop within {degrees} deg of the direction of incidence, where a detector blocks the beam: --mask-retro {degrees}?"),
+        )
+    }));
+    hints
+}
+
+/// What the samples and their fit tell together.
+pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Vec<Hint> {
+    let mut hints = before_fit(measurement);
+    hints.extend(quantity(measurement, options, outcome, derived));
+    let moved = offset::confirmed(measurement, options, outcome);
+    hints.extend(moved.map(|(degrees, rms)| {
+        Hint::new(
+            "offset",
+            format!(
+                "the peaks are at theta_i {degrees:+.2} deg at every angle of incidence; with {:+.2} deg added to theta_s the residual would be {:.1} % in place of {:.1} %: is the zero of an axis off?",
+                -degrees,
+                100.0 * rms,
+                100.0 * outcome.rms_ln
+            ),
+        )
+    }));
+    hints.extend(brightest_left_out(&measurement.samples, outcome).map(|(count, degrees)| {
+        Hint::new(
+            "robust",
+            format!("--robust left out {count} samples side by side with the brightest one, at theta_i = {degrees} deg: if they are the specular peak, fit without it"),
+        )
+    }));
+    if outcome.rms_ln >= LARGE {
+        hints.push(Hint::new(
+            "model",
+            format!(
+                "the residual is {:.0} %: brdfit compare shows whether another model fits better",
+                100.0 * outcome.rms_ln
+            ),
+        ));
+    }
+    hints
+}
+
+/// Are the values a reflectance factor, or not calibrated? More light comes back than went in, and not only by a lobe: rho_d is on its bound, or near 1 and the excess clear at all angles of incidence.
+fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Option<Hint> {
+    const BRIGHT: f64 = 0.8;
+    const CLEARLY: f64 = 1.2;
+    let reflectances = || derived.iter().map(|at| at.reflectance.value);
+    let (least, most) = (
+        reflectances().fold(f64::INFINITY, f64::min),
+        reflectances().fold(0.0, f64::max),
+    );
+    let place = outcome.model.place("rho_d")?;
+    let (rho_d, upper) = (outcome.params[place], options.upper[place]);
+    let on_bound = outcome.at_bound.contains(&"rho_d") && rho_d >= upper && upper >= 1.0;
+    if derived.is_empty() || !(on_bound && most > 1.0 || rho_d >= BRIGHT && least > CLEARLY) {
+        return None;
+    }
+    let bound = if on_bound { "rho_d is on its bound and " } else { "" };
+    let begin = format!("{bound}the reflectance is {most:.2}");
+    let darkest = measurement
+        .samples
+        .iter()
+        .map(|sample| sample.brdf)
+        .fold(f64::INFINITY, f64::min);
+    let is_brdf = measurement.read_as.quantity == Quantity::Brdf;
+    // As a reflectance factor the darkest direction must be possible.
+    Some(Hint::new(
+        "quantity",
+        if is_brdf && darkest <= 1.1 {
+            format!("{begin}: are the values reflectance factors, --quantity brf?")
+        } else {
+            format!("{begin}: are the values calibrated, and in which unit?")
+        },
+    ))
+}
+
+/// How many samples beside the brightest one of an angle of incidence a robust fit left out with it, and that angle in degrees.
+fn brightest_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usize, f64)> {
+    // A few outliers side by side happen; a lobe has more samples.
+    const RUN: usize = 5;
+    let outliers = &outcome.robust.as_ref()?.outliers;
+    let is_out = |sample: &Sample<f64>| outliers.iter().any(|&place| std::ptr::eq(&samples[place], sample));
+    let runs = plane::by_angle(samples).into_iter().filter_map(|(theta_i, mut group)| {
+        group.retain(|sample| plane::signed_theta_s(sample).is_some());
+        group.sort_by(|a, b| {
+            let angle = |sample| plane::signed_theta_s(sample).unwrap_or_default();
+            angle(a).total_cmp(&angle(b))
+        });
+        let peak = (0..group.len()).max_by(|&a, &b| group[a].brdf.total_cmp(&group[b].brdf))?;
+        let before = group[..peak].iter().rev().take_while(|sample| is_out(sample)).count();
+        let after = group[peak..].iter().take_while(|sample| is_out(sample)).count();
+        (after > 0 && before + after >= RUN).then_some((before + after, (theta_i.to_degrees() * 1e4).round() / 1e4))
+    });
+    runs.max_by_key(|(count, _)| *count)
+}
+
+/// The median; NaN of nothing.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// Signed theta_s in degrees and ln f of the samples in plane, by that angle.
+fn in_plane(group: &[&Sample<f64>]) -> Vec<(f64, f64)> {
+    let mut points: Vec<(f64, f64)> = group
+        .iter()
+        .filter_map(|sample| Some((plane::signed_theta_s(sample)?, Real::ln(sample.brdf))))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{self, robust::Robust};
+
+    #[test]
+    fn a_lobe_that_a_robust_fit_left_out_is_seen() {
+        let brdf = |theta_s: i32| {
+            if (theta_s - 30).abs() <= 3 {
+                50.0
+            } else {
+                0.1 + 0.001 * f64::from(theta_s % 7)
+            }
+        };
+        let samples: Vec<Sample<f64>> = (-80..=80)
+            .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), brdf(theta_s)))
+            .collect();
+        let mut outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
+        let mut seen = |outliers: Vec<usize>| {
+            outcome.robust = Some(Robust { scale: 0.01, outliers });
+            brightest_left_out(&samples, &outcome)
+        };
+        assert_eq!(seen((107..=113).collect()), Some((7, 30.0)));
+        // Scattered outliers, a few beside the peak, and many elsewhere are no lobe.
+        assert_eq!(seen((0..160).step_by(3).collect()), None);
+        assert_eq!(seen(vec![109, 110, 111]), None);
+        assert_eq!(seen((20..40).collect()), None);
+        outcome.robust = None;
+        assert_eq!(brightest_left_out(&samples, &outcome), None);
+    }
+}

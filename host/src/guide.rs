@@ -1,0 +1,29 @@
+//! The guide: one page a task.
+//!
+//! | page | tells |
+//! |---|---|
+//! | [`reading`] | which files are read, and what their numbers are taken for |
+//! | [`models`] | models, terms, bounds, and several scans together |
+//! | [`uncertainty`] | what a scan tells of the parameters |
+//! | [`results`] | reports, JSON, the shell, exit codes |
+//! | [`batch`] | many scans, on one machine or several |
+//! | [`exports`] | the model in other programs |
+//! | [`accuracy`] | what the fit reaches, and how fast |
+//! | [`how_it_works`] | from a sample to the optimum |
+
+#[doc = include_str!("guide/accuracy.md")]
+pub mod accuracy {}
+#[doc = include_str!("guide/batch.md")]
+pub mod batch {}
+#[doc = include_str!("guide/exports.md")]
+pub mod exports {}
+#[doc = include_str!("guide/how_it_works.md")]
+pub mod how_it_works {}
+#[doc = include_str!("guide/models.md")]
+pub mod models {}
+#[doc = include_str!("guide/reading.md")]
+pub mod reading {}
+#[doc = include_str!("guide/results.md")]
+pub mod results {}
+#[doc = include_str!("guide/uncertainty.md")]
+pub mod uncertainty {}

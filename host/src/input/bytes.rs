@@ -81,8 +81,11 @@ fn decoded(bytes: &[u8]) -> Result<Cow<'_, str>, Error> {
             .filter(|text| !text.contains('\0'))
             .ok_or_else(|| not_text(bytes, 0));
     }
-    if let Some(place) = bytes.iter().position(is_binary) {
-        return Err(not_text(bytes, place));
+    // Without an early end the bytes of a chunk are looked at together.
+    let mut chunks = bytes.chunks(4096);
+    if chunks.any(|chunk| chunk.iter().fold(false, |any, byte| any | is_binary(byte))) {
+        let place = bytes.iter().position(is_binary);
+        return Err(not_text(bytes, place.unwrap_or(0)));
     }
     Ok(match std::str::from_utf8(bytes) {
         Ok(text) => Cow::Borrowed(text),

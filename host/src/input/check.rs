@@ -29,7 +29,8 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     };
     let divisor = scan.about.divisor;
     let mut masked = Vec::new();
-    let (mut samples, mut lines) = (Vec::new(), Vec::new());
+    let count = scan.rows.len();
+    let (mut samples, mut lines) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut counts, mut faults) = (scan.left_out, Faults::default());
     let mut weights = weight::Count::default();
     for row in &scan.rows {
@@ -55,10 +56,8 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         return Err(faults.error());
     }
     if samples.is_empty() {
-        let rows = scan.rows.len();
-        return Err(
-            Error::new(format!("none of the {rows} rows is a valid sample")).help("check the columns, units and masks")
-        );
+        return Err(Error::new(format!("none of the {count} rows is a valid sample"))
+            .help("check the columns, units and masks"));
     }
     if options.forward.is_none() && scan.about.kind != Kind::Own && !scan.about.settled {
         side::refuse(&samples)?;

@@ -85,14 +85,18 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
         Angles::Rad => angle - std::f64::consts::TAU,
     };
     let mut turned = false;
-    for angle in scan
-        .rows
-        .iter_mut()
-        .flat_map(|row| [&mut row.theta_i, &mut row.theta_s])
-    {
-        if (270.0..=360.0).contains(&degrees(*angle)) {
-            *angle = back(*angle);
-            turned = true;
+    let all = scan.rows.iter().flat_map(|row| [row.theta_i, row.theta_s]);
+    // Most scans have no such angle, and need no search.
+    if degrees(all.fold(0.0, f64::max)) >= 270.0 {
+        for angle in scan
+            .rows
+            .iter_mut()
+            .flat_map(|row| [&mut row.theta_i, &mut row.theta_s])
+        {
+            if (270.0..=360.0).contains(&degrees(*angle)) {
+                *angle = back(*angle);
+                turned = true;
+            }
         }
     }
     if turned {
@@ -101,10 +105,8 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
             .push("angles above 270 degrees are negative ones: 280 is -80".to_string());
     }
     let angles = || scan.rows.iter().filter(|row| row.theta_s.is_finite());
-    let low = angles().map(|row| degrees(row.theta_s)).fold(f64::INFINITY, f64::min);
-    let high = angles()
-        .map(|row| degrees(row.theta_s))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let low = degrees(angles().map(|row| row.theta_s).fold(f64::INFINITY, f64::min));
+    let high = degrees(angles().map(|row| row.theta_s).fold(f64::NEG_INFINITY, f64::max));
     if high - low <= 180.0 {
         return from_the_surface(scan, low, angles().filter(|row| degrees(row.theta_s) > 90.0).count());
     }

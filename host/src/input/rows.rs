@@ -94,7 +94,14 @@ pub fn each(
         cells.clear();
         match delimiter {
             None => cells.extend(line.split_ascii_whitespace()),
-            Some(delimiter) => cells.extend(parts(line, delimiter)),
+            Some(delimiter) => {
+                let mut begin = 0;
+                for end in memchr::memchr_iter(delimiter, line.as_bytes()) {
+                    cells.push(bare(&line[begin..end]));
+                    begin = end + 1;
+                }
+                cells.push(bare(&line[begin..]));
+            }
         }
         // Spreadsheets write blank rows as delimiters.
         if cells.iter().any(|cell| !cell.is_empty()) {
@@ -104,22 +111,15 @@ pub fn each(
     Ok(())
 }
 
-/// The cells of a line without quotes, trimmed.
-fn parts(line: &str, delimiter: u8) -> impl Iterator<Item = &str> {
-    let ends = memchr::memchr_iter(delimiter, line.as_bytes()).chain([line.len()]);
-    let mut begin = 0;
-    ends.map(move |end| {
-        let cell = &line[begin..end];
-        begin = end + 1;
-        // Most cells have nothing to trim.
-        let bare = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
-        let bytes = cell.as_bytes();
-        if bare(bytes.first()) && bare(bytes.last()) {
-            cell
-        } else {
-            cell.trim()
-        }
-    })
+/// A cell without the blanks around it, which most cells do not have.
+fn bare(cell: &str) -> &str {
+    let is_bare = |byte: Option<&u8>| byte.is_some_and(u8::is_ascii_graphic);
+    let bytes = cell.as_bytes();
+    if is_bare(bytes.first()) && is_bare(bytes.last()) {
+        cell
+    } else {
+        cell.trim()
+    }
 }
 
 /// As [`each`] where cells may be in quotes, and so hold delimiters and line ends.
@@ -205,7 +205,7 @@ pub fn number_in(cells: &[&str], column: usize, decimal: &mut Decimal) -> Result
 /// A number as people and programs write it.
 pub fn parse(cell: &str, decimal: Decimal) -> Option<f64> {
     if decimal != Decimal::Comma
-        && let Ok(number) = cell.parse()
+        && let Ok(number) = fast_float2::parse(cell)
     {
         return Some(number);
     }
@@ -224,6 +224,9 @@ pub fn parse(cell: &str, decimal: Decimal) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
     use super::*;
 
     #[test]
@@ -252,6 +255,64 @@ mod tests {
                 .to_string()
                 .contains("decimal comma")
         );
+    }
+
+    #[test]
+    fn numbers_have_the_bits_of_the_standard_library() {
+        let words = [
+            "",
+            "+",
+            "-",
+            ".",
+            "1.",
+            ".5",
+            "-.5e1",
+            "+7",
+            "1e",
+            "e1",
+            "1e+",
+            "1_0",
+            " 1",
+            "1 ",
+            "0x1p3",
+            "inf",
+            "-INF",
+            "Infinity",
+            "nan",
+            "NaN",
+            "+nan",
+            "infin",
+            "1e400",
+            "-1e-400",
+            "5e-324",
+            "2.4703282292062328e-324",
+            "1.7976931348623158e308",
+            "9007199254740993",
+            "9007199254740992.999999999999999999",
+            "0.1e-30",
+            "123456789012345678901234567890e-20",
+            "00012.50",
+        ];
+        // Digits, points and exponents in any order, mostly as numbers have them.
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        let made = (0..20_000).map(|_| {
+            let mut below = |n: u64| random.next_u64() % n;
+            let digits: String = (0..1 + below(19)).map(|_| char::from(b'0' + below(10) as u8)).collect();
+            let point = below(digits.len() as u64 + 1) as usize;
+            let exponent =
+                ["".to_string(), format!("e{}", below(40)), format!("E-{}", below(340))][below(3) as usize].clone();
+            format!(
+                "{}{}.{}{exponent}",
+                ["", "-", "+"][below(3) as usize],
+                &digits[..point],
+                &digits[point..]
+            )
+        });
+        for word in words.map(String::from).into_iter().chain(made) {
+            let expected = word.parse::<f64>().ok().map(f64::to_bits);
+            let found = fast_float2::parse::<f64, _>(&word).ok().map(f64::to_bits);
+            assert_eq!(found, expected, "{word:?}");
+        }
     }
 
     #[test]

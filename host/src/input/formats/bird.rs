@@ -1,5 +1,7 @@
 //! EURAMET BiRD universal BRDF JSON: named arrays with units, one value each for each sample, and uncertainties.
 
+use std::collections::HashMap;
+
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -96,6 +98,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     }
     let weight = uncertainty(data, text, &lines)?;
     let mut scans: Vec<RawScan> = Vec::new();
+    let mut places: HashMap<Vec<String>, usize> = HashMap::new();
     for k in 0..count {
         let number = |variable: &Variable| number(variable.values[k], text, &lines);
         let angle = |name: &str, variable: &Variable| degrees(name, &variable.unit, number(variable)?);
@@ -108,13 +111,11 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             line: lines.place(text, data.brdf.values[k].get()).0,
         };
         let names = names(data, k);
-        match scans.iter_mut().find(|scan| scan.names == names) {
-            Some(scan) => scan.rows.push(row),
-            None => scans.push(RawScan {
-                rows: vec![row],
-                ..RawScan::new(names, Angles::Deg)
-            }),
-        }
+        let place = *places.entry(names).or_insert_with_key(|names| {
+            scans.push(RawScan::new(names.clone(), Angles::Deg));
+            scans.len() - 1
+        });
+        scans[place].rows.push(row);
     }
     if scans.is_empty() {
         return Err(Error::new("BRDF has no values").help("give one for each sample"));

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 
 use super::grid::{self, Azimuths};
-use super::words::Words;
+use super::words::{Words, begins_line};
 use crate::error::{Error, shown};
 use crate::input::format::{Format, Reader};
 use crate::input::left_out::Reason;
@@ -23,8 +23,10 @@ pub const FORMAT: Format = Format {
 
 /// True if the text has its keywords, and not those of Zemax.
 fn is(text: &str) -> bool {
-    let begins = |word: &str| text.lines().any(|line| line.split_whitespace().next() == Some(word));
-    begins("ScatterRadial") && begins("DataBegin") && begins("AOI") && !begins("AngleOfIncidence")
+    ["DataBegin", "ScatterRadial", "AOI"]
+        .iter()
+        .all(|word| begins_line(text, word))
+        && !begins_line(text, "AngleOfIncidence")
 }
 
 /// What a block of numbers is of.
@@ -62,7 +64,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut scans: Vec<RawScan> = Vec::new();
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
     let mut transmitted: Vec<f64> = Vec::new();
-    let anisotropic = planes(words.clone()) > 1;
+    let anisotropic = has_planes(words.clone());
     let mut block = Block::default();
     loop {
         let (line, word) = words.word("DataEnd")?;
@@ -153,17 +155,17 @@ fn header(words: &mut Words) -> Result<(bool, Azimuths, Vec<f64>), Error> {
     ))
 }
 
-/// How many planes of incidence there are.
-fn planes(mut words: Words) -> usize {
-    let mut planes: Vec<&str> = Vec::new();
+/// True if there is more than one plane of incidence.
+fn has_planes(mut words: Words) -> bool {
+    let mut first = None;
     while let Ok((_, word)) = words.word("") {
         if let ("POI", Some(plane)) = (word, words.peek())
-            && !planes.contains(&plane)
+            && *first.get_or_insert(plane) != plane
         {
-            planes.push(plane);
+            return true;
         }
     }
-    planes.len()
+    false
 }
 
 fn angle_of_incidence(words: &mut Words) -> Result<f64, Error> {

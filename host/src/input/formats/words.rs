@@ -2,6 +2,16 @@
 
 use crate::error::{Error, shown};
 
+/// True if a line begins with this word, blanks before it aside.
+pub fn begins_line(text: &str, word: &str) -> bool {
+    let places = memchr::memmem::find_iter(text.as_bytes(), word);
+    places.into_iter().any(|place| {
+        let before = text[..place].rsplit('\n').next().unwrap_or("");
+        let after = text[place + word.len()..].chars().next();
+        before.trim().is_empty() && after.is_none_or(char::is_whitespace)
+    })
+}
+
 /// The words of a text from here on; what follows a `#` in its line is a remark.
 #[derive(Clone)]
 pub struct Words<'a> {
@@ -168,6 +178,13 @@ mod tests {
         assert_eq!(words.rest_of_line(), "Thing");
         assert_eq!(words.word("x").unwrap(), (7, "line"));
         assert!(words.peek().is_none() && words.word("more").unwrap_err().what.contains("where more should"));
+    }
+
+    #[test]
+    fn a_line_begins_with_a_whole_word() {
+        let text = "# AOI\nx AOI\nAOIs\n\t KEY 3\nEnd";
+        assert!(begins_line(text, "KEY") && begins_line(text, "End") && begins_line("AOI", "AOI"));
+        assert!(!begins_line(text, "AOI") && !begins_line(text, "Data"));
     }
 
     #[test]

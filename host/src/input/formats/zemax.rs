@@ -1,7 +1,7 @@
 //! Tabular BSDF of Zemax ("BSDF Data Interchange"): angles from the specular ray, blocks of numbers for each rotation and angle of incidence.
 
 use super::grid;
-use super::words::Words;
+use super::words::{Words, begins_line};
 use crate::error::Error;
 use crate::input::direction;
 use crate::input::format::{Format, Reader};
@@ -19,8 +19,9 @@ pub const FORMAT: Format = Format {
 
 /// True if the text has the keywords that other `.bsdf` files lack.
 fn is(text: &str) -> bool {
-    let begins = |word: &str| text.lines().any(|line| line.split_whitespace().next() == Some(word));
-    begins("AngleOfIncidence") && begins("ScatterRadial") && begins("DataBegin")
+    ["DataBegin", "ScatterRadial", "AngleOfIncidence"]
+        .iter()
+        .all(|word| begins_line(text, word))
 }
 
 /// One scan, or one for each sample rotation and each of X, Y and Z.

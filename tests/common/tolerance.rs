@@ -92,10 +92,10 @@ pub const EXACT_CURVE: Tolerance = Tolerance(1e-30);
 pub const NEIGHBOUR: Tolerance = Tolerance(3e-15);
 /// Cost of a scan of m = 1e-5 or 10 that the model fits exactly; measured 2.0e-31.
 pub const SMOOTH_F64: Tolerance = Tolerance(1e-30);
-/// Cost of a scan at normal incidence, where rho_s and rho_v are one parameter; measured 7.2e-19.
-pub const NORMAL_F64: Tolerance = Tolerance(2e-18);
-/// The same in f32; measured 5.3e-13.
-pub const NORMAL_F32: Tolerance = Tolerance(2e-12);
+/// Cost of a scan without noise at normal incidence, where rho_s and rho_v are one parameter; measured 2.2e-10, an rms of ln f of 2.5e-6: the search ends when its rounds agree, before the valley does (7.2e-19 with the rounds of 0.1.0).
+pub const NORMAL_F64: Tolerance = Tolerance(3e-10);
+/// The same in f32; measured 2.2e-10.
+pub const NORMAL_F32: Tolerance = Tolerance(3e-10);
 /// Cost of a scan of n = kappa = 100, the corner of Table 1, measured 4.0e-30.
 pub const METAL: Tolerance = Tolerance(3e-29);
 /// Relative error of the cost of samples that count twice; measured 2.3e-15.
@@ -135,12 +135,12 @@ pub const RECOVERED: Tolerance = Tolerance(3e-11);
 pub const VALLEY_COST: Tolerance = Tolerance(5e-29);
 /// Most passes of one fit from each of 100 candidates to its end, the nine sets with noise; measured 1008, into a minimum of test data 1 with a thousand times the cost of the best.
 pub const PASSES_NOISY: Tolerance = Tolerance(1100.0);
-/// The same of test data 2 and 3 alone, in whose valleys n and kappa end; measured 127.
-pub const PASSES_VALLEY: Tolerance = Tolerance(130.0);
+/// The same of test data 2 and 3 alone, in whose valleys n and kappa end; measured 911, from a needle far narrower than the peak (127 from the candidates of 0.1.0, which were wider).
+pub const PASSES_VALLEY: Tolerance = Tolerance(1000.0);
 /// The same without noise, where the valley is followed to the last bit; measured 501.
 pub const PASSES_IDEAL: Tolerance = Tolerance(550.0);
-/// Largest median of the same passes over the 100 fits of a set; measured 36.
-pub const PASSES_MEDIAN: Tolerance = Tolerance(40.0);
+/// Largest median of the same passes over the 100 fits of a set; measured 43 (39 from the candidates of 0.1.0).
+pub const PASSES_MEDIAN: Tolerance = Tolerance(45.0);
 
 // Uncertainty: what a scan tells about the parameters.
 
@@ -165,8 +165,8 @@ pub const BOOTSTRAP: Tolerance = Tolerance(0.1);
 
 // Files as instruments write them.
 
-/// Relative error of any parameter of a scan without noise, in any text format; measured 7.6e-12.
-pub const FORMATS: Tolerance = Tolerance(2e-11);
+/// Relative error of any parameter of a scan without noise, in any text format; measured 1.8e-12.
+pub const FORMATS: Tolerance = Tolerance(3e-12);
 /// Root of the mean squared difference of ln f between a model and the samples of a whole MERL file of it, dimensionless; measured 5.0e-15.
 pub const MERL_WHOLE: Tolerance = Tolerance(1e-14);
 /// The same of the samples in plane, whose theta_d is rounded to half a degree; measured 2.2e-2.
@@ -226,12 +226,12 @@ pub const SPEOS_ZEMAX_FACTOR: Tolerance = Tolerance(0.2);
 pub const IDEAL_STDERR: Tolerance = Tolerance(5e-18);
 /// An angle in degrees after radians and back; measured 3.6e-15.
 pub const DEGREES: Tolerance = Tolerance(1e-14);
-/// Largest relative error of a parameter from a scan without noise; measured 1.2e-13.
-pub const IDEAL_PRINTED: Tolerance = Tolerance(5e-13);
+/// Largest relative error of a parameter from a scan without noise; measured 2.1e-14.
+pub const IDEAL_PRINTED: Tolerance = Tolerance(5e-14);
 /// Root of the mean squared residual of ln f of the same; measured 2.2e-16.
 pub const IDEAL_RMS: Tolerance = Tolerance(1e-15);
-/// Relative error of rho_d of the same in f32; measured 1.5e-8.
-pub const IDEAL_F32: Tolerance = Tolerance(5e-8);
+/// Relative error of rho_d of the same in f32; measured 8.9e-8, one unit in the last place.
+pub const IDEAL_F32: Tolerance = Tolerance(1e-7);
 /// Root of the mean squared residual of scans with 5 % of noise or less, piped from one command to another; measured 0.0265.
 pub const PIPED_RMS: Tolerance = Tolerance(0.03);
 /// A factor of noise beyond its range; rounding of the quotient it is known by.

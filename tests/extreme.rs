@@ -13,7 +13,7 @@ use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample};
 use brdfit_core::lm::{Bounds, Fit, Options, Problem, Stop, fit};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::{paper_fit, search};
+use brdfit_core::search::{CANDIDATES, paper_fit, search};
 use brdfit_core::start;
 use brdfit_suite::tolerance::{self, check};
 use proptest::prelude::*;
@@ -96,7 +96,7 @@ fn run_all<R: Real, const TERMS: u8, const P: usize>(
         let first = scan.cost(&start::uniform(1, i, &bounds));
         assert_sound(&scan, &bounds, first, &paper_fit(&scan, &bounds, 1, i, &options));
     }
-    let found = search(&scan, &bounds, 1, 64, &options);
+    let found = search(&scan, &bounds, 1, CANDIDATES, &options);
     let best = found.best;
     assert_sound(&scan, &bounds, R::MAX, &best);
     best.at.cost.f64()

@@ -59,6 +59,8 @@ const RIVAL_END: (f64, f64) = (1.1, 2.0);
 const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
 /// Rounds that must have led to the best end: after the first rounds, and after the first parts of the range of slopes.
 const HITS: (u32, u32) = (2, 3);
+/// A scan without noise: the best cost is below this part of that of a poor candidate. Then the cost does not tell what is near, and nothing settles it.
+const EXACT: f64 = 1e-9;
 /// Ends that are remembered.
 const ENDS: usize = 16;
 /// Two ends of the same cost, to this part, are one.
@@ -214,6 +216,7 @@ pub fn search_from<R: Real, const P: usize>(
         round: 0,
         best: None,
         ends: Vec::new(),
+        poorest: R::ZERO,
         rival: None,
         minima: Minima::default(),
         evaluations: Evaluations::default(),
@@ -271,6 +274,8 @@ struct Search<'a, R, S: ?Sized, const P: usize> {
     best: Option<Fit<R, P>>,
     /// The ends of least cost, best first.
     ends: Vec<End<R, P>, ENDS>,
+    /// The largest cost of a candidate.
+    poorest: R,
     /// The best short fit with other slopes than the best end.
     rival: Option<([R; P], R)>,
     minima: Minima<R, P, MINIMA>,
@@ -286,10 +291,11 @@ impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
         while made < candidates.max(1) {
             let round = self.round;
             if ends_early && round == ROUNDS {
-                unsettled = self.best_hits() < HITS.0 || self.has_rival_fit() || self.has_rival_end();
+                let rivals = self.has_rival_fit() || self.has_rival_end();
+                unsettled = self.best_hits() < HITS.0 || rivals || self.is_exact();
             }
             let settled = if round == ROUNDS + FIRST_BANDS {
-                !unsettled || self.best_hits() >= HITS.1 && !self.has_rival_end()
+                !unsettled || self.best_hits() >= HITS.1 && !self.has_rival_end() && !self.is_exact()
             } else {
                 round >= ROUNDS && !unsettled
             };
@@ -340,6 +346,7 @@ impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
         for &(_, i, x) in &ranked {
             self.evaluations.cost += 1;
             let (x, cost) = self.scene.level(self.bounds, &x);
+            self.poorest = self.poorest.max(cost);
             minima::insert(&mut levelled, begun, (cost, i, x), |levelled| levelled.0);
         }
         let mut fits: Vec<(Fit<R, P>, u32), SLOPES_BEGUN> = Vec::new();
@@ -363,6 +370,13 @@ impl<R: Real, S: Scene<R, P> + ?Sized, const P: usize> Search<'_, R, S, P> {
     /// Is a cost within this factor of the best?
     fn is_near(&self, cost: R, factor: f64) -> bool {
         self.ends.first().is_none_or(|best| cost < best.cost * R::of(factor))
+    }
+
+    /// Is there no noise in the scan?
+    fn is_exact(&self) -> bool {
+        self.ends
+            .first()
+            .is_some_and(|best| best.cost < self.poorest * R::of(EXACT))
     }
 
     /// In how many rounds a fit has ended in the best.

@@ -92,10 +92,10 @@ pub const EXACT_CURVE: Tolerance = Tolerance(1e-30);
 pub const NEIGHBOUR: Tolerance = Tolerance(3e-15);
 /// Cost of a scan of m = 1e-5 or 10 that the model fits exactly; measured 2.0e-31.
 pub const SMOOTH_F64: Tolerance = Tolerance(1e-30);
-/// Cost of a scan without noise at normal incidence, where rho_s and rho_v are one parameter; measured 2.2e-10, an rms of ln f of 2.5e-6: the search ends when its rounds agree, before the valley does (7.2e-19 with the rounds of 0.1.0).
-pub const NORMAL_F64: Tolerance = Tolerance(3e-10);
-/// The same in f32; measured 2.2e-10.
-pub const NORMAL_F32: Tolerance = Tolerance(3e-10);
+/// Cost of a scan at normal incidence, where rho_s and rho_v are one parameter; measured 9.5e-24.
+pub const NORMAL_F64: Tolerance = Tolerance(2e-23);
+/// The same in f32; measured 5.3e-13.
+pub const NORMAL_F32: Tolerance = Tolerance(2e-12);
 /// Cost of a scan of n = kappa = 100, the corner of Table 1, measured 4.0e-30.
 pub const METAL: Tolerance = Tolerance(3e-29);
 /// Relative error of the cost of samples that count twice; measured 2.3e-15.

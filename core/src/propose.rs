@@ -55,21 +55,24 @@ pub(crate) fn shapes<R: Real, const P: usize>(
     let mut even = even.into_iter();
     let mut of_index = [numbers[6], numbers[7]];
     let mut slopes = 0;
-    for (k, parameter) in parameters.iter().enumerate() {
+    // By index, so that the compiler sees that none is out of range.
+    for k in 0..P {
+        let parameter = &parameters[k];
         if parameter.is_weight() {
             continue;
         }
+        let range = (bounds.lower[k], bounds.upper[k]);
         let u = even.next().unwrap_or(own[k]);
         match parameter.role {
             Role::Index => of_index[0] = u,
             Role::Absorption => of_index[1] = u,
             Role::Slope => {
-                let spread = between(parameter, bounds, k, seen.finest, in_band(u, region, slopes));
-                x[k] = slope(spread, seen, &numbers, region, k);
+                let spread = between(parameter, range, seen.finest, in_band(u, region, slopes));
+                x[k] = slope(spread, seen, &numbers, region, like(region).map(|like| like[k]));
                 slopes += 1;
             }
             _ => {
-                let spread = between(parameter, bounds, k, R::ZERO, u);
+                let spread = between(parameter, range, R::ZERO, u);
                 x[k] = like(region).map_or(spread, |like| like[k]);
             }
         }
@@ -106,12 +109,14 @@ fn slope<R: Real, const P: usize>(
     seen: &Seen<R>,
     numbers: &[R; NUMBERS],
     region: Region<R, P>,
-    k: usize,
+    like: Option<R>,
 ) -> R {
     let of_pair = || pair(seen, [numbers[0], numbers[1], numbers[2]]);
     match region {
-        Region::Index(like) => like[k],
-        Region::Slopes(like) => of_pair().unwrap_or_else(|| like[k] * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp()),
+        Region::Index(_) => like.unwrap_or(spread),
+        Region::Slopes(_) => {
+            of_pair().unwrap_or_else(|| like.unwrap_or(spread) * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp())
+        }
         Region::Everywhere if numbers[4] < R::of(PAIRS) => of_pair().unwrap_or(spread),
         _ => spread,
     }
@@ -128,8 +133,7 @@ fn pair<R: Real>(seen: &Seen<R>, [lobe, first, second]: [R; 3]) -> Option<R> {
 }
 
 /// A value of a parameter at `u` of its range, from 0 to 1; evenly in the logarithm if it is above 0.
-fn between<R: Real, const P: usize>(parameter: &Parameter, bounds: &Bounds<R, P>, k: usize, finest: R, u: R) -> R {
-    let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
+fn between<R: Real>(parameter: &Parameter, (lower, upper): (R, R), finest: R, u: R) -> R {
     let (least, most) = (R::of(parameter.spread.0).max(finest), R::of(parameter.spread.1));
     let from = lower.max(least).min(upper);
     let to = upper.min(most).max(lower);
@@ -168,7 +172,9 @@ fn index<R: Real, const P: usize>(
         _ => {}
     }
     let rest = (regime - steps[2]) / (R::ONE - steps[2]);
-    for (k, parameter) in parameters.iter().enumerate() {
+    for k in 0..P {
+        let parameter = &parameters[k];
+        let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
         let (chosen, u, fading) = match parameter.role {
             Role::Index => (n, u, R::ONE),
             Role::Absorption => (kappa2, rest, R::of(FADE_FROM.0)),
@@ -176,9 +182,9 @@ fn index<R: Real, const P: usize>(
         };
         x[k] = match (region, chosen) {
             (Region::Slopes(like), _) if i.is_multiple_of(2) => like[k],
-            _ if fades => fading.max(bounds.lower[k]).min(bounds.upper[k]),
-            (_, Some(value)) => value.max(bounds.lower[k]).min(bounds.upper[k]),
-            _ => between(parameter, bounds, k, R::ZERO, u.max(R::ZERO)),
+            _ if fades => fading.max(lower).min(upper),
+            (_, Some(value)) => value.max(lower).min(upper),
+            _ => between(parameter, (lower, upper), R::ZERO, u.max(R::ZERO)),
         };
     }
     if fades {
@@ -189,10 +195,14 @@ fn index<R: Real, const P: usize>(
 
 /// Where kappa cannot be what a fading index begins with, n is.
 fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], bounds: &Bounds<R, P>) {
-    let place = |role: Role| parameters.iter().position(|parameter| parameter.role == role);
-    let absorbs = place(Role::Absorption).is_some_and(|k| x[k] >= R::of(FADE_FROM.0));
-    if let Some(n) = place(Role::Index).filter(|_| !absorbs) {
-        x[n] = R::of(FADE_FROM.1).max(bounds.lower[n]).min(bounds.upper[n]);
+    let mut absorbs = false;
+    for k in 0..P {
+        absorbs |= parameters[k].role == Role::Absorption && x[k] >= R::of(FADE_FROM.0);
+    }
+    for k in 0..P {
+        if parameters[k].role == Role::Index && !absorbs {
+            x[k] = R::of(FADE_FROM.1).max(bounds.lower[k]).min(bounds.upper[k]);
+        }
     }
 }
 
@@ -204,8 +214,8 @@ fn vary<R: Real, const P: usize>(
     like: &[R; P],
     own: &[R; P],
 ) {
-    for (k, parameter) in parameters.iter().enumerate() {
-        if !parameter.is_weight() {
+    for k in 0..P {
+        if !parameters[k].is_weight() {
             let factor = (own[k] + own[k] - R::ONE).exp();
             x[k] = (like[k] * factor).max(bounds.lower[k]).min(bounds.upper[k]);
         }

@@ -52,14 +52,20 @@ fn is_within(params: &brdfit_params<f64>, options: &brdfit_options<f64>) -> bool
     let (low, high) = (list(&options.lower), list(&options.upper));
     // kappa goes through its square, and what the terms leave out is 0 or 1.
     let held = |x: f64, k: usize| x >= low[k] * (1.0 - 1e-12) && x <= high[k] * (1.0 + 1e-12) || x == 0.0 || x == 1.0;
-    list(params).into_iter().enumerate().all(|(k, x)| held(x, k) || !x.is_finite() && options.terms != BRDFIT_ALL)
+    list(params)
+        .into_iter()
+        .enumerate()
+        .all(|(k, x)| held(x, k) || !x.is_finite() && options.terms != BRDFIT_ALL)
 }
 
 fuzz_target!(|data: &[u8]| {
     let mut source = Source(data);
     let mut options = MaybeUninit::<brdfit_options<f64>>::uninit();
     // SAFETY: the memory is there and aligned.
-    assert_eq!(unsafe { brdfit_options_init_f64(options.as_mut_ptr()) }, brdfit_error::None);
+    assert_eq!(
+        unsafe { brdfit_options_init_f64(options.as_mut_ptr()) },
+        brdfit_error::None
+    );
     // SAFETY: it was just written.
     let mut options = unsafe { options.assume_init() };
     let changes = source.byte();
@@ -110,7 +116,11 @@ fuzz_target!(|data: &[u8]| {
         }
         let mut brdf = f64::NAN;
         let params = source.params();
-        let at = [source.number(0.0, 1.57), source.number(-1.57, 1.57), source.number(0.0, 3.2)];
+        let at = [
+            source.number(0.0, 1.57),
+            source.number(-1.57, 1.57),
+            source.number(0.0, 3.2),
+        ];
         if brdfit_brdf_f64(at[0], at[1], at[2], &params, &mut brdf) == brdfit_error::None {
             assert!(brdf >= f64::MIN_POSITIVE, "{brdf}");
         }
@@ -118,7 +128,10 @@ fuzz_target!(|data: &[u8]| {
         let index = u64::from_le_bytes(source.bytes());
         if brdfit_candidate_f64(scan, &options, index, start.as_mut_ptr()) == brdfit_error::None {
             let begun = brdfit_fit_begin_f64(fit, scan, start.as_ptr(), &options);
-            assert!(matches!(begun, brdfit_error::None | brdfit_error::NotFinite), "{begun:?}");
+            assert!(
+                matches!(begun, brdfit_error::None | brdfit_error::NotFinite),
+                "{begun:?}"
+            );
         }
         if brdfit_fit_begin_f64(fit, scan, &params, &options) == brdfit_error::None {
             let mut cost = f64::INFINITY;
@@ -126,7 +139,11 @@ fuzz_target!(|data: &[u8]| {
                 assert_eq!(brdfit_fit_run_f64(fit, scan, 4), brdfit_error::None);
                 assert_eq!(brdfit_fit_result_f64(fit, result.as_mut_ptr()), brdfit_error::None);
                 let result = result.assume_init();
-                assert!(result.cost <= cost || !result.cost.is_finite(), "{} after {cost}", result.cost);
+                assert!(
+                    result.cost <= cost || !result.cost.is_finite(),
+                    "{} after {cost}",
+                    result.cost
+                );
                 assert!(is_within(&result.params, &options), "{:?}", result.params);
                 cost = result.cost;
             }

@@ -5,8 +5,9 @@ use std::fs;
 use std::sync::LazyLock;
 
 use brdfit::records::journal::Journal;
-use brdfit::records::record::{self, Fitted, Head, Record, Row, Rows};
+use brdfit::records::record::{self, Head, Record, Rows, ScanRecord, Written};
 use brdfit::records::shard::Shard;
+use brdfit::result::cell::{Cell, Kind};
 use libfuzzer_sys::fuzz_target;
 use tempfile::TempDir;
 
@@ -19,7 +20,7 @@ fn head() -> Head {
         files: 4,
         names: 0,
         rows: Rows::Cells,
-        columns: vec!["file".into()],
+        columns: vec![("file".into(), Kind::Text)],
         shard: Shard::WHOLE,
     }
 }
@@ -41,7 +42,9 @@ fn file(choice: u8, data: &[u8]) -> Vec<u8> {
 }
 
 fuzz_target!(|data: &[u8]| {
-    let Some((&choice, data)) = data.split_first() else { return };
+    let Some((&choice, data)) = data.split_first() else {
+        return;
+    };
     let file = file(choice, data);
     let path = FOLDER.path().join("out.csv.partial");
     fs::write(&path, &file).expect("a file");
@@ -57,14 +60,17 @@ fuzz_target!(|data: &[u8]| {
     let kept = Record {
         index: 1,
         contents: 7,
-        scans: vec![Fitted {
-            row: Row::Cells(vec!["a.csv".into()]),
+        scans: vec![ScanRecord {
+            row: Written::Cells(vec![Cell::Text("a.csv".into())]),
             line: Err("no".into()),
         }],
     };
     journal.keep(&kept).expect("room");
     drop(journal);
-    assert!(fs::read(&path).expect("the file").starts_with(&file), "something was taken away");
+    assert!(
+        fs::read(&path).expect("the file").starts_with(&file),
+        "something was taken away"
+    );
     let mut again = Journal::open(path, &head(), true).expect("the same batch");
     assert_eq!(again.record(1).expect("what was kept"), kept);
 });

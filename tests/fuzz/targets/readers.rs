@@ -17,7 +17,9 @@ static FORMAT: LazyLock<Option<input::format::Format>> = LazyLock::new(|| {
 
 fuzz_target!(|data: &[u8]| {
     // The first byte chooses options.
-    let Some((&choice, file)) = data.split_first() else { return };
+    let Some((&choice, file)) = data.split_first() else {
+        return;
+    };
     let options = ReadOptions {
         input_format: *FORMAT,
         drop_invalid: choice & 1 != 0,
@@ -39,7 +41,10 @@ fuzz_target!(|data: &[u8]| {
                 for sample in &scan.samples {
                     assert!(sample.brdf.is_normal() && sample.brdf > 0.0, "{sample:?}");
                     assert!(sample.weight.is_finite() && sample.weight >= 0.0, "{sample:?}");
-                    assert!((0.0..std::f64::consts::FRAC_PI_2).contains(&sample.theta_i), "{sample:?}");
+                    assert!(
+                        (0.0..std::f64::consts::FRAC_PI_2).contains(&sample.theta_i),
+                        "{sample:?}"
+                    );
                     assert!(sample.theta_s.abs() < std::f64::consts::FRAC_PI_2, "{sample:?}");
                     assert!(sample.delta_phi.is_finite(), "{sample:?}");
                     squares += sample.weight * sample.weight;

@@ -85,8 +85,10 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     ///
     /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
     pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
+        // So the compiler sees that no index is out of range.
+        let places = || Self::WEIGHTS.into_iter().flatten().filter(|&k| k < P);
         let (mut least, mut most) = (R::ZERO, R::MAX);
-        for k in Self::WEIGHTS.into_iter().flatten() {
+        for k in places() {
             if x[k] > R::ZERO {
                 least = least.max(bounds.lower[k] / x[k]);
                 most = most.min(bounds.upper[k] / x[k]);
@@ -99,7 +101,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             return (*x, squares);
         }
         let mut levelled = *x;
-        for k in Self::WEIGHTS.into_iter().flatten() {
+        for k in places() {
             levelled[k] *= scale;
         }
         (bounds.clamp(levelled), cost)

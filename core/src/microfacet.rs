@@ -145,21 +145,22 @@ where
 
     fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
         let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        if let Some(rho_d) = place(0) {
-            x[rho_d] = like[rho_d];
+        if let Some((rho_d, &old)) = place(0).and_then(|k| x.get_mut(k).zip(like.get(k))) {
+            *rho_d = old;
         }
         let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
         let ratio = ratio(index(like), index(x), seen.peaks);
         for (k, pair) in WEIGHT.map(place).into_iter().zip([0, 1, 2].map(pair)) {
-            if let Some(k) = k {
-                x[k] = like[k] * ratio.0[pair % 2];
+            if let Some((rho, &old)) = k.and_then(|k| x.get_mut(k).zip(like.get(k))) {
+                *rho = old * ratio.0[pair % 2];
             }
         }
     }
 
     /// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
     fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
+        // So the compiler sees that no index is out of range.
+        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index)).filter(|&k| k < P);
         let mut part = R::ZERO;
         for k in WEIGHT.into_iter().filter_map(place) {
             part = part.max(x[k] / bounds.upper[k]);

@@ -1,20 +1,20 @@
 //! Proof of the global optimum: interval branch and bound.
 //!
-//! [`certify`] proves that no parameters within the bounds have a cost below `(1 - eps)` of the least one known, or finds better ones, adopts them and goes on.
+//! `certify` proves that no parameters within the bounds have a cost below `(1 - eps)` of the least one known, or finds better ones, adopts them and goes on.
 //!
 //! # Coordinates
-//! With mu = 1/m^2 and, for each lobe, F at a reference angle, Eq. 14 is a sum of exponentials in u_d = ln rho_d, u_s = ln(rho_s F mu), u_v = ln(rho_v F mu) and mu; n and kappa come in only by phi, how F depends on the angle ([`reflect`], [`cell`]).
+//! With mu = 1/m^2 and, for each lobe, F at a reference angle, Eq. 14 is a sum of exponentials in u_d = ln rho_d, u_s = ln(rho_s F mu), u_v = ln(rho_v F mu) and mu; n and kappa come in only by phi, how F depends on the angle (`reflect`, `cell`).
 //! So the flat valley of rho_s, rho_v, n and kappa lies along the coordinates.
 //!
 //! # Rigour
-//! Every bound is rounded outward: intervals where there is time ([`interval`]), elsewhere what rounding can add is bounded beside the sums.
+//! Every bound is rounded outward: intervals where there is time (`interval`), elsewhere what rounding can add is bounded beside the sums.
 //! The elementary functions are those of [`brdfit_core::real`], inflated by more than their tested error.
-//! rho = 0 is ln rho = minus infinity, which boxes reach by a side that is open below ([`region`]).
+//! rho = 0 is ln rho = minus infinity, which boxes reach by a side that is open below (`region`).
 //! The claim is on Eq. 14 with the geometry as [`brdfit_core::geometry::Geometry`] computes it.
 //!
 //! # Order
-//! A box is bounded by single samples ([`range`]), then by a quadratic below the cost ([`taylor`], [`quadratic`]); both also cut away what has no cost below the target.
-//! What is left is split ([`branch`]); boxes that share a rectangle of n and kappa are handled together, those with the least bound first.
+//! A box is bounded by single samples (`range`), then by a quadratic below the cost (`taylor`, `quadratic`); both also cut away what has no cost below the target.
+//! What is left is split (`branch`); boxes that share a rectangle of n and kappa are handled together, those with the least bound first.
 //! Rounds have the same tasks on any number of threads, so boxes and results are the same too.
 
 mod branch;

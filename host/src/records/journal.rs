@@ -94,7 +94,10 @@ impl Journal {
     }
 
     fn append(&mut self, line: &[u8]) -> Result<(), Error> {
-        self.file.write_all(line).map_err(|error| self.broken(&error))?;
+        // A record that was read may have left the file in its middle.
+        let sought = self.file.seek(SeekFrom::Start(self.end));
+        let written = sought.and_then(|_| self.file.write_all(line));
+        written.map_err(|error| self.broken(&error))?;
         self.end += line.len() as u64;
         Ok(())
     }

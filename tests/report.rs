@@ -205,7 +205,7 @@ fn writes_figures_in_each_form() {
     assert!(ran.errors.contains("let it end in .svg"), "{}", ran.errors);
     let ran = program::brdfit(&["fit", &scan(), "--plot", "/nowhere/fit.png"], b"");
     let what = if cfg!(feature = "png") {
-        "no such folder"
+        "/nowhere/fit.png: cannot be written: No such file or directory (os error 2); check that the folder is there"
     } else {
         "--features png"
     };

@@ -91,6 +91,89 @@ fn tables_of_any_model_read_back() {
     }
 }
 
+/// Results of scans at three wavelengths, as `brdfit fit --format json` writes them.
+fn results(parameters: [[f64; 6]; 3]) -> Vec<u8> {
+    let lengths = [450, 550, 650];
+    let each = lengths.into_iter().zip(parameters).map(|(nm, values)| {
+        let named: serde_json::Map<_, _> = NAMES
+            .map(String::from)
+            .into_iter()
+            .zip(values.map(Value::from))
+            .collect();
+        serde_json::json!({"file": "paint.csv", "scan": format!("{nm} nm"), "model": "beckmann", "parameters": named})
+    });
+    Value::Array(each.collect()).to_string().into_bytes()
+}
+
+const BLUE: [f64; 6] = [0.05, 0.5, 0.0, 0.3, 1.5, 0.0];
+const GREEN: [f64; 6] = [0.1, 0.5, 0.0, 0.3, 1.5, 0.0];
+const RED: [f64; 6] = [0.4, 0.5, 0.0, 0.3, 1.5, 0.0];
+
+/// The table of Mitsuba's measured BSDF holds any model and several wavelengths: read back, its values are those of the models.
+#[test]
+fn rgl_tables_read_back() {
+    let file = std::env::temp_dir().join(format!("brdfit_rgl_{}.bsdf", std::process::id()));
+    let to = file.to_str().unwrap();
+    let all = program::brdfit(&["export", "-", "--to", "rgl", "-o", to], &results([BLUE, GREEN, RED]));
+    assert_eq!((all.code, all.errors.as_str()), (0, ""));
+    let read = ReadOptions {
+        drop_invalid: true,
+        column: vec!["450 nm".into(), "650 nm".into()],
+        ..ReadOptions::default()
+    };
+    let bytes = fs::read(&file).unwrap();
+    fs::remove_file(&file).unwrap();
+    let scans = input::parse("file", &bytes, &read).unwrap();
+    assert_eq!(scans.len(), 2);
+    for (scan, values) in scans.iter().zip([BLUE, RED]) {
+        assert!(scan.samples.len() > 200_000);
+        let off = scan.samples.iter().map(|sample| {
+            let angles = [sample.theta_i, sample.theta_s, sample.delta_phi];
+            // Near the horizon single precision does not know the cosine.
+            let cos = libm::cos(sample.theta_s);
+            (sample.brdf / literal::f(angles, values) - 1.0).abs() * cos
+        });
+        let off = off.fold(0.0, f64::max);
+        assert!(tolerance::RGL_ROUND_TRIP.admits(off), "{off:e}");
+    }
+}
+
+/// Three results are one colour: the base follows the channels, and everything else is common.
+#[test]
+fn three_results_are_one_colour() {
+    let run = |to: &str, index: &str| {
+        program::brdfit(
+            &["export", "-", "--to", to, "--index", index],
+            &results([BLUE, GREEN, RED]),
+        )
+    };
+    let gltf = run("gltf", "3,2,1");
+    assert!(gltf.errors.starts_with("against the fitted model -"), "{}", gltf.errors);
+    let material = &serde_json::from_str::<Value>(&gltf.output).unwrap()["materials"][0];
+    let base: Vec<f64> = material["pbrMetallicRoughness"]["baseColorFactor"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|value| value.as_f64().unwrap())
+        .collect();
+    assert!(
+        base[0] > 2.0 * base[1] && base[1] > 1.5 * base[2] && base[3] == 1.0,
+        "{base:?}"
+    );
+    let ior = material["extensions"]["KHR_materials_ior"]["ior"].as_f64().unwrap();
+    assert!((1.0..2.0).contains(&ior), "{ior}");
+    for (to, index, what) in [
+        ("gltf", "3,2", "a colour has one result or three, not 2"),
+        ("zemax", "3,2,1", "there are 3 results"),
+        ("rgl", "1,1", "two results have the same wavelength"),
+        ("materialx", "4", "none is number 4"),
+    ] {
+        let refused = run(to, index);
+        assert_eq!(refused.code, 2, "{to} {index}");
+        assert!(refused.errors.contains(what), "{}", refused.errors);
+    }
+}
+
 /// OpticStudio and FRED have ABg themselves: what they are given adds up to the model.
 #[test]
 fn abg_goes_to_programs_that_have_it() {
@@ -425,11 +508,14 @@ fn mitsuba_has_every_bit_and_tells_its_deviation() {
         (number(4), number(6), ran.output)
     };
     let (least, largest, text) = native(LIST);
-    assert!(least < -50.0 && largest > 20.0, "{text}");
+    // With the parameters of Eq. 14 themselves it is 83 % off, as it has no volume lobe and another masking.
     assert!(
-        text.contains("\"alpha\": 0.1,")
-            && text.contains("\"specular_reflectance\": {\"type\": \"uniform\", \"value\": 20.0}")
+        -80.0 < least && least < -50.0 && 20.0 < largest && largest < 80.0,
+        "{text}"
     );
+    let alpha = text.split_once("\"alpha\": ").unwrap().1;
+    let alpha: f64 = alpha.split_once(',').unwrap().0.parse().unwrap();
+    assert!((alpha / 0.1 - 1.0).abs() < 0.05, "{alpha}");
     // Without lobes that differ, nothing does.
     let (least, largest, _) = native("rho_d=0.5,rho_s=0,rho_v=0,m=0.1,n=1.5,kappa=0");
     assert_eq!((least, largest), (0.0, 0.0));
@@ -438,10 +524,5 @@ fn mitsuba_has_every_bit_and_tells_its_deviation() {
         native("rho_d=0,rho_s=1,rho_v=0,m=0.01,n=1.5,kappa=0"),
         native("rho_d=0,rho_s=1,rho_v=0,m=0.5,n=1.5,kappa=0"),
     );
-    assert!(
-        smooth.1 < rough.1 && rough.2.contains("= {\n    \"type\": \"roughconductor\""),
-        "{} {}",
-        smooth.1,
-        rough.1
-    );
+    assert!(smooth.1 < rough.1, "{} {}", smooth.1, rough.1);
 }

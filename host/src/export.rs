@@ -8,4 +8,8 @@ pub mod mitsuba;
 pub mod model;
 pub mod native;
 pub mod openmaterial;
+pub mod refit;
+pub mod renderers;
+pub mod rgl;
+pub mod targets;
 pub mod zemax;

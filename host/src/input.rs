@@ -14,7 +14,7 @@ mod direction;
 mod doubt;
 mod facts;
 pub mod format;
-mod formats;
+pub(crate) mod formats;
 pub mod head;
 mod join;
 pub mod left_out;

@@ -285,3 +285,5 @@ pub const TAIL_VALUE: Tolerance = Tolerance(10.0);
 pub const TAIL_DERIVATIVE: Tolerance = Tolerance(2.0);
 /// Tables of other models than Eq. 14, read back: the largest relative difference, near narrow peaks.
 pub const TABLE_ROUND_TRIP: Tolerance = Tolerance(1e-6);
+/// Values of RGL tensor files, read back, relative and times cos theta_s: they have single precision.
+pub const RGL_ROUND_TRIP: Tolerance = Tolerance(1e-6);

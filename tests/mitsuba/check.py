@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks both Mitsuba exports against brdfit at 1000 pairs of directions, the densities against quadrature, and renders a sphere.
+"""Checks the Mitsuba exports against brdfit at 1000 pairs of directions, the densities against quadrature, and renders a sphere.
 
 pip install mitsuba==3.9.1 numpy
 tests/mitsuba/check.py target/release/brdfit [sphere.png]
@@ -78,6 +78,12 @@ print(f"nearest native, these {len(rows)} pairs: {100 * values.min():+.1f} to {1
 values = off(mi.load_dict(module("mitsuba-native", "surface", rho_v=0)[0].surface), expected(rho_v=0))
 print(f"nearest native without volume lobe: {100 * values.min():+.1f} to {100 * values.max():+.1f} %")
 
+PAINT = {"rho_s": 0.5, "rho_v": 0, "m": 0.25, "n": 1.5, "kappa": 0}
+paint, text = module("mitsuba-principled", "paint", **PAINT)
+print("principled,", text.splitlines()[1][2:])
+values = off(mi.load_dict(paint.paint), expected(**PAINT))
+print(f"principled, these {len(rows)} pairs: {100 * values.min():+.1f} to {100 * values.max():+.1f} %")
+
 # The mean weight of the samples is the reflectance.
 count, random = 1_000_000, np.random.default_rng(0)
 u, v, w = (mi.Float(np.float32(random.random(count))) for _ in range(3))
@@ -102,3 +108,14 @@ if picture:
     })
     mi.util.write_bitmap(picture, mi.render(scene))
     print(f"rendered {picture}")
+
+# Mitsuba reads tables of wavelengths in its spectral variants alone.
+mi.set_variant("llvm_ad_spectral")
+for changes in ({}, PAINT):
+    parameters = ",".join(f"{key}={value}" for key, value in {**PARAMETERS, **changes}.items())
+    table = folder / "table.bsdf"
+    brdfit("export", "--params", parameters, "--to", "rgl", "--wavelength", "550", "--output", str(table))
+    values = np.abs(off(mi.load_dict({"type": "measured", "filename": str(table)}), expected(**changes)))
+    half, most, nearly_all = (np.percentile(values, share) for share in (50, 90, 99))
+    print(f"measured: within {half:.1e} in half of the pairs, {most:.1e} in 90 %, {nearly_all:.1e} in 99 %")
+    assert half < 1e-3 and most < 2e-2

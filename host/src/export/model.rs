@@ -40,35 +40,36 @@ impl Model {
         }
     }
 
-    /// From a result of `brdfit fit --format json`, of which `index` (from 1) chooses one if there are several.
+    /// From results of `brdfit fit --format json`: all of them, or those that `index` (from 1) chooses, in its order.
     ///
     /// # Errors
-    /// It is not such a result, there are several and none is chosen, or its parameters have no BRDF.
-    pub fn of_json(bytes: &[u8], index: Option<usize>) -> Result<Model, Error> {
-        let none = |what: &str| Error::new(what).help("give what brdfit fit --format json has written");
+    /// It is no such result, there are not so many, or their parameters have no BRDF.
+    pub fn of_json(bytes: &[u8], index: &[usize]) -> Result<Vec<Model>, Error> {
         let all: Value =
-            serde_json::from_slice(bytes).map_err(|error| none("this is no JSON").at_line(error.line() as u64))?;
+            serde_json::from_slice(bytes).map_err(|error| not_ours("this is no JSON").at_line(error.line() as u64))?;
         let results = match &all {
             Value::Array(results) => results.as_slice(),
             one => std::slice::from_ref(one),
         };
-        let result = match (results, index) {
-            ([one], None) => one,
-            (several, None) => {
-                return Err(Error::new(format!("there are {} results", several.len()))
-                    .help("choose one with --index N, from 1 on"));
-            }
-            (several, Some(index)) => index
-                .checked_sub(1)
-                .and_then(|place| several.get(place))
-                .ok_or_else(|| {
-                    Error::new(format!(
-                        "there are {} results, so none is number {index}",
-                        several.len()
-                    ))
-                    .help("count from 1")
-                })?,
-        };
+        if index.is_empty() {
+            return results.iter().map(Model::of_result).collect();
+        }
+        let chosen = index.iter().map(|&index| {
+            let result = index.checked_sub(1).and_then(|place| results.get(place));
+            let none = || {
+                Error::new(format!(
+                    "there are {} results, so none is number {index}",
+                    results.len()
+                ))
+                .help("count from 1")
+            };
+            Model::of_result(result.ok_or_else(none)?)
+        });
+        chosen.collect()
+    }
+
+    /// From one result.
+    fn of_result(result: &Value) -> Result<Model, Error> {
         // Results of version 0.1 name no model.
         let model = match result["model"].as_str() {
             Some(name) => model(name)?,
@@ -77,7 +78,7 @@ impl Model {
         let mut values = Vec::new();
         for (place, parameter) in model.parameters.iter().enumerate() {
             let value = result["parameters"][parameter.name].as_f64();
-            let value = value.ok_or_else(|| none(&format!("there is no parameters.{}", parameter.name)))?;
+            let value = value.ok_or_else(|| not_ours(&format!("there is no parameters.{}", parameter.name)))?;
             check(model, place, value)?;
             values.push(value);
         }
@@ -135,6 +136,10 @@ impl Model {
                 .help("--to zemax, bird and openmaterial take any model; or fit --model abg")
         })
     }
+}
+
+fn not_ours(what: &str) -> Error {
+    Error::new(what).help("give what brdfit fit --format json has written")
 }
 
 /// The wavelength in a scan's name, such as `R 550 nm` or `550nm`.

@@ -17,8 +17,8 @@ mod zemax;
 
 mod foreign;
 mod grid;
-mod tensor;
-mod warp;
+pub(crate) mod tensor;
+pub(crate) mod warp;
 mod words;
 
 use super::format::{Format, Reader};

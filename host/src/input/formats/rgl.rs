@@ -31,6 +31,8 @@ struct Material<'a> {
     /// Azimuths of incidence, radians; one of an isotropic material.
     phi_i: Vec<f64>,
     isotropic: bool,
+    /// False if the colours are f cos theta_s themselves, and not over the distribution of normals.
+    scaled: bool,
     ndf: Table,
     sigma: Table,
     vndf: Field<'a>,
@@ -109,7 +111,11 @@ fn take(
         .filter(|&(x, y)| x > 0 || y == 0);
     for (x, y) in nodes {
         let [u, v] = warp.sample(x as f64 / (nx - 1) as f64, y as f64 / (ny - 1) as f64);
-        let scale = material.ndf.at(u, v) / (4.0 * sigma);
+        let scale = if material.scaled {
+            material.ndf.at(u, v) / (4.0 * sigma)
+        } else {
+            1.0
+        };
         // The half vector, with x from the normal to incidence.
         let phi_m = if material.isotropic {
             phi_of_u(v)
@@ -190,6 +196,7 @@ fn material(file: &[u8]) -> Result<Material<'_>, Error> {
     Ok(Material {
         ndf: table("ndf")?,
         sigma: table("sigma")?,
+        scaled: find("jacobian").is_none_or(|field| field.number(0) != 0.0),
         theta_i,
         phi_i,
         isotropic,
@@ -228,6 +235,7 @@ fn u_of_phi(phi: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::formats::tensor::Numbers;
 
     const NODES: [usize; 2] = [5, 4];
 
@@ -245,6 +253,10 @@ mod tests {
 
     /// A file of these azimuths of incidence, whose functions are bilinear, so that the tables are exact.
     fn file(phi_i: &[f64], colours: usize) -> Vec<u8> {
+        file_with(phi_i, colours, 1)
+    }
+
+    fn file_with(phi_i: &[f64], colours: usize, jacobian: u8) -> Vec<u8> {
         let theta_i = [0.25, 1.0];
         let slices = phi_i.len() * theta_i.len();
         let [nx, ny] = NODES;
@@ -253,39 +265,26 @@ mod tests {
         (0..slices).for_each(|_| (0..colours).for_each(|k| all_colours.extend(channel(k as f64 + 2.0))));
         let wavelengths: Vec<f64> = (0..colours).map(|k| 400.0 + 50.5 * k as f64).collect();
         let (name, shape) = if colours == 3 { ("rgb", 3) } else { ("spectra", colours) };
-        let fields: Vec<(&str, Vec<usize>, Vec<f64>)> = vec![
-            ("theta_i", vec![2], theta_i.to_vec()),
-            ("phi_i", vec![phi_i.len()], phi_i.to_vec()),
-            ("ndf", vec![3, 6], table([6, 3], [1.0, 2.0, 0.5, 0.25])),
-            ("sigma", vec![2, 3], table([3, 2], [1.0, -0.5, 0.0, 0.0])),
+        let numbers = |values: Vec<f64>| Numbers::F32(values.into_iter().map(|value| value as f32).collect());
+        tensor::write(&[
+            ("theta_i", vec![2], numbers(theta_i.to_vec())),
+            ("phi_i", vec![phi_i.len()], numbers(phi_i.to_vec())),
+            ("ndf", vec![3, 6], numbers(table([6, 3], [1.0, 2.0, 0.5, 0.25]))),
+            ("sigma", vec![2, 3], numbers(table([3, 2], [1.0, -0.5, 0.0, 0.0]))),
             (
                 "vndf",
                 vec![phi_i.len(), 2, 4, 6],
-                table([6, 4], [1.0, 2.0, 3.0, 6.0]).repeat(slices),
+                numbers(table([6, 4], [1.0, 2.0, 3.0, 6.0]).repeat(slices)),
             ),
-            ("luminance", vec![phi_i.len(), 2, ny, nx], channel(1.0).repeat(slices)),
-            (name, vec![phi_i.len(), 2, shape, ny, nx], all_colours),
-            ("wavelengths", vec![colours], wavelengths),
-        ];
-        let head: usize = fields
-            .iter()
-            .map(|(name, shape, _)| 13 + name.len() + 8 * shape.len())
-            .sum();
-        let mut file = b"tensor_file\0\x01\0".to_vec();
-        file.extend((fields.len() as u32).to_le_bytes());
-        let mut offset = file.len() + head;
-        for (name, shape, values) in &fields {
-            file.extend((name.len() as u16).to_le_bytes());
-            file.extend(name.as_bytes());
-            file.extend((shape.len() as u16).to_le_bytes());
-            file.push(10);
-            file.extend((offset as u64).to_le_bytes());
-            shape.iter().for_each(|&size| file.extend((size as u64).to_le_bytes()));
-            offset += 4 * values.len();
-        }
-        let values = fields.iter().flat_map(|(_, _, values)| values);
-        values.for_each(|&value| file.extend((value as f32).to_le_bytes()));
-        file
+            (
+                "luminance",
+                vec![phi_i.len(), 2, ny, nx],
+                numbers(channel(1.0).repeat(slices)),
+            ),
+            (name, vec![phi_i.len(), 2, shape, ny, nx], numbers(all_colours)),
+            ("wavelengths", vec![colours], numbers(wavelengths)),
+            ("jacobian", vec![1], Numbers::Bytes(vec![jacobian])),
+        ])
     }
 
     fn read(file: &[u8], column: &str) -> Result<Vec<RawScan>, Error> {
@@ -348,6 +347,15 @@ mod tests {
                 assert!(specular || (ratio - 1.0).abs() < 1e-5, "{row:?} {ratio}");
             }
         }
+    }
+
+    #[test]
+    fn a_file_may_hold_the_values_themselves() {
+        let [scaled, plain] = [1, 0].map(|jacobian| read(&file_with(&[0.0], 3, jacobian), "").unwrap());
+        let node = |scans: &[RawScan]| scans[0].rows[0].value;
+        // Where u and v are 0, the distribution of normals is 1, and sigma 1 - 0.5 u of the angle of incidence.
+        let sigma = 1.0 - 0.5 * u_of_theta(0.25);
+        assert!((node(&scaled) / node(&plain) * 4.0 * sigma - 1.0).abs() < 1e-6);
     }
 
     #[test]

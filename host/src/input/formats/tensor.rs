@@ -23,6 +23,7 @@ pub struct Field<'a> {
 /// The kind of numbers.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
+    Byte,
     F32,
     F64,
     /// Numbers that no measurement has.
@@ -34,6 +35,7 @@ impl Field<'_> {
     pub fn number(&self, place: usize) -> f64 {
         let at = |size: usize| self.bytes.get(place * size..(place + 1) * size);
         match self.kind {
+            Kind::Byte => at(1).map(|bytes| bytes[0].into()),
             Kind::F32 => at(4).and_then(|bytes| Some(f32::from_le_bytes(bytes.try_into().ok()?).into())),
             Kind::F64 => at(8).and_then(|bytes| Some(f64::from_le_bytes(bytes.try_into().ok()?))),
             Kind::Other => None,
@@ -119,6 +121,7 @@ pub fn fields(file: &[u8]) -> Result<Vec<Field<'_>>, Error> {
             name,
             shape,
             kind: match kind {
+                1 => Kind::Byte,
                 10 => Kind::F32,
                 11 => Kind::F64,
                 _ => Kind::Other,
@@ -126,6 +129,48 @@ pub fn fields(file: &[u8]) -> Result<Vec<Field<'_>>, Error> {
         });
     }
     Ok(fields)
+}
+
+/// Numbers to write.
+pub enum Numbers {
+    /// Bytes without a sign.
+    Bytes(Vec<u8>),
+    /// Numbers of single precision.
+    F32(Vec<f32>),
+}
+
+/// A file of these fields: name, shape and as many numbers as the shape says.
+pub fn write(fields: &[(&str, Vec<usize>, Numbers)]) -> Vec<u8> {
+    let head: usize = fields
+        .iter()
+        .map(|(name, shape, _)| 13 + name.len() + 8 * shape.len())
+        .sum();
+    let mut file = MAGIC.to_vec();
+    file.extend([1, 0]);
+    file.extend((fields.len() as u32).to_le_bytes());
+    let mut offset = file.len() + head;
+    let mut body = Vec::new();
+    for (name, shape, numbers) in fields {
+        file.extend((name.len() as u16).to_le_bytes());
+        file.extend(name.as_bytes());
+        file.extend((shape.len() as u16).to_le_bytes());
+        let begin = body.len();
+        match numbers {
+            Numbers::Bytes(bytes) => {
+                file.push(1);
+                body.extend(bytes);
+            }
+            Numbers::F32(values) => {
+                file.push(10);
+                body.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+            }
+        }
+        file.extend((offset as u64).to_le_bytes());
+        shape.iter().for_each(|&size| file.extend((size as u64).to_le_bytes()));
+        offset += body.len() - begin;
+    }
+    file.extend(body);
+    file
 }
 
 #[cfg(test)]

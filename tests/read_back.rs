@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use brdfit::document::{json, write_row};
 use brdfit::engine::Material;
 use brdfit::export::model::Model;
 use brdfit::export::{bird, zemax};
 use brdfit::input::{self, ReadOptions};
 use brdfit::number::shortest;
-use brdfit::output::{json, write_row};
 use brdfit::page::results;
 use brdfit::plain::{of_cell, plain};
 use brdfit_core::brdf::Params;

@@ -1,53 +1,77 @@
 //! What the options of the command line mean to the engine.
 
 use brdfit_core::brdf::ALL;
-use clap::Args;
+#[cfg(feature = "cli")]
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+#[cfg(feature = "cli")]
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::analysis::choose::{Wanted, sets};
 use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
+#[cfg(feature = "cli")]
 use crate::names::{METHODS, PRECISIONS};
 use crate::parameters::{AUTO, Range, apply, check, models, names_of, parameter};
 use crate::terms::terms;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
-#[derive(Args, Debug)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[derive(Clone, Debug)]
 pub struct SearchArguments {
     /// How to search: candidates and short fits, or the paper's full fits from uniform starts
-    #[arg(long, value_name = "METHOD", value_parser = one_of(&METHODS), default_value = METHODS[0].0)]
-    method: Method,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = one_of(&METHODS), default_value = METHODS[0].0))]
+    pub method: Method,
     /// Number of starts [default: the paper's method 250; the other as many as the scan needs, 435 at most, and of more than that all are made]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    starts: Option<u32>,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000)))]
+    pub starts: Option<u32>,
     /// Seed of the starts
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", default_value_t = 0))]
+    pub seed: u64,
     /// The model; of several with commas between, or of all with auto, that of least BIC
-    #[arg(long, value_name = "NAME|LIST|auto", default_value = "beckmann")]
-    model: String,
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "NAME|LIST|auto", default_value = "beckmann")
+    )]
+    pub model: String,
     /// Terms of the model, of diffuse,surface,volume,absorbing, or auto: the fewest that the scan supports
-    #[arg(long, value_name = "LIST", default_value = "all")]
-    terms: String,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "LIST", default_value = "all"))]
+    pub terms: String,
     /// Bounds of a parameter, in place of Table 1 of the paper, in every model that has it; repeatable
-    #[arg(long, value_name = "NAME=LO:HI")]
-    bounds: Vec<String>,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME=LO:HI"))]
+    pub bounds: Vec<String>,
     /// Holds a parameter fixed, in every model that has it; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
-    fix: Vec<String>,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME=VALUE"))]
+    pub fix: Vec<String>,
     /// Leaves out samples far from the fit (6 robust standard deviations of ln f), and says how many
-    #[arg(long)]
-    robust: bool,
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub robust: bool,
     /// Number type of the computation
-    #[arg(long, value_name = "PRECISION", value_parser = one_of(&PRECISIONS), default_value = PRECISIONS[0].0)]
-    precision: Precision,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "PRECISION", value_parser = one_of(&PRECISIONS), default_value = PRECISIONS[0].0))]
+    pub precision: Precision,
     /// Number of threads, which changes no bit [default: all]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024)))]
+    pub threads: Option<u16>,
+}
+
+impl Default for SearchArguments {
+    fn default() -> Self {
+        SearchArguments {
+            method: Method::Default,
+            starts: None,
+            seed: 0,
+            model: Model::paper().name.into(),
+            terms: "all".into(),
+            bounds: Vec::new(),
+            fix: Vec::new(),
+            robust: false,
+            precision: Precision::F64,
+            threads: None,
+        }
+    }
 }
 
 /// One of these, by its name.
+#[cfg(feature = "cli")]
 fn one_of<T: Clone + Send + Sync>(known: &'static [(&'static str, T)]) -> impl TypedValueParser<Value = T> {
     let value = |name: String| {
         known
@@ -102,6 +126,7 @@ impl SearchArguments {
     ///
     /// # Errors
     /// The system gives no threads.
+    #[cfg(feature = "cli")]
     pub fn pool(&self) -> Result<ThreadPool, Error> {
         ThreadPoolBuilder::new()
             .num_threads(self.threads.map_or(0, usize::from))

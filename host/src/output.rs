@@ -1,15 +1,13 @@
-//! How results leave the program: numbers with all their digits, and where a result goes.
+//! How results leave the program: in which form, and where to.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::STDIN;
 use crate::interrupt;
-use crate::plain;
 use crate::target::{Target, stdout_is_no_input};
 
 /// In which form a result leaves, and where to: options of most commands.
@@ -67,21 +65,6 @@ impl<F: ValueEnum + Clone + Send + Sync + 'static> OutputArguments<F> {
         Target::differ(&both)?;
         Ok((result, picture))
     }
-}
-
-/// JSON of several lines, in which each character can be seen.
-pub fn json(value: &impl Serialize) -> String {
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    let written = serde_json::to_string_pretty(value).unwrap_or_default();
-    plain::json(&written).into_owned() + "\n"
-}
-
-/// Writes a row of a table whose cells show all that is in them, and are not formulas.
-///
-/// # Errors
-/// The stream breaks.
-pub fn write_row(writer: &mut csv::Writer<impl Write>, row: &[impl AsRef<str>]) -> csv::Result<()> {
-    writer.write_record(row.iter().map(|text| plain::cell(text.as_ref()).into_owned()))
 }
 
 /// Where a result goes: a file that may be written, or standard output for none or `-`.

@@ -9,6 +9,7 @@ mod frame;
 mod marks;
 mod overlay;
 mod panels;
+#[cfg(feature = "cli")]
 pub mod picture;
 mod polar;
 mod profile;

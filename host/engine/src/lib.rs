@@ -14,6 +14,7 @@ mod search;
 mod values;
 
 pub mod certify;
+pub mod clock;
 pub mod joint;
 pub mod models;
 pub mod robust;

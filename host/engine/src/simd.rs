@@ -127,7 +127,9 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
     FastScan<'a, R, M, P, C, VECTORS>
 {
     const DOUBLE: bool = size_of::<R>() == size_of::<f64>();
+    #[cfg(target_arch = "x86_64")]
     const HAS_AVX2: bool = VECTORS == EVERY || VECTORS != SCALAR && Self::DOUBLE;
+    #[cfg(target_arch = "x86_64")]
     const HAS_AVX512: bool = VECTORS == EVERY || VECTORS == AVX512 && Self::DOUBLE;
     const HAS_PORTABLE: bool = match VECTORS {
         SCALAR => false,

@@ -1,7 +1,6 @@
 //! One search with a clock beside it: what it had found, when, and after how many passes.
 
 use std::cell::RefCell;
-use std::time::Instant;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{Bounds, Linearization, Options, Problem};
@@ -9,6 +8,7 @@ use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 use brdfit_core::search::{self, Candidate, Evaluations, Region, Scene};
 
+use crate::clock::Stopwatch;
 use crate::compiled::Kernel;
 use crate::layout::Layout;
 use crate::{FitError, FitOptions, Method, Values};
@@ -63,7 +63,7 @@ pub(crate) fn watch<R: Real, const P: usize>(
     let layout = Layout::new(own, options.model);
     let bounds: Bounds<R, P> = layout.bounds(options);
     let (lm, starts) = (Options::default(), options.starts());
-    let begun = Instant::now();
+    let begun = Stopwatch::start();
     let watched = Watched {
         scene,
         begun,
@@ -110,7 +110,7 @@ struct Seen<R, const P: usize> {
 /// A scene that notes each new least cost.
 struct Watched<'a, R, const P: usize> {
     scene: &'a Kernel<'a, R, P>,
-    begun: Instant,
+    begun: Stopwatch,
     seen: RefCell<Seen<R, P>>,
 }
 

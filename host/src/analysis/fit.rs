@@ -1,12 +1,13 @@
 //! The fit of one measured scan, with all that follows from it.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use brdfit_core::geometry::Sample;
 
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
 use super::hints::{self, Hint};
+use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
@@ -119,7 +120,7 @@ impl FittedScan {
 /// # Errors
 /// The scan has too few samples, or no start gives a finite model.
 pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
-    let begun = Instant::now();
+    let begun = Stopwatch::start();
     let found = choose::fit(&measurement.samples, wanted);
     let elapsed = begun.elapsed();
     match found {

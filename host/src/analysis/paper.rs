@@ -1,11 +1,10 @@
 //! Section 4 of the paper: its three synthetic sets, fitted by both methods.
 
-use std::time::Instant;
-
 use brdfit_core::brdf::NAMES;
 use serde::Serialize;
 
 use super::paper_sets::{self, Noise};
+use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitOptions, Method, Minimum, Outcome};
 
 /// Section 4 of the paper, done again.
@@ -132,7 +131,7 @@ pub fn study(noise: Noise, seed: u64, starts: u32) -> Study {
 fn draw(csv: &str, noise_seed: u32, paper: &FitOptions) -> Draw {
     let samples = paper_sets::samples(csv);
     let timed = |options: &FitOptions| {
-        let begin = Instant::now();
+        let begin = Stopwatch::start();
         let outcome = engine::fit(&samples, options).expect("the built-in sets are valid");
         let evaluations = u64::from(outcome.evaluations.cost) + u64::from(outcome.evaluations.linearize);
         let elapsed_s = begin.elapsed().as_secs_f64();

@@ -6,11 +6,12 @@ use clap::Args;
 use serde_json::json;
 
 use crate::analysis::choose::{Candidate, Choice, choose};
+use crate::document;
 use crate::engine::{FitOptions, Model, Outcome};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::four;
-use crate::output::{self, Format, OutputArguments, deliver};
+use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::models;
 use crate::plot::{self, picture};
 use crate::result::json::ByName;
@@ -121,7 +122,7 @@ fn json(measurement: &Measurement, choice: &Choice) -> String {
         "models": models,
         "provenance": provenance(&measurement.about, None),
     });
-    output::json(&value)
+    document::json(&value)
 }
 
 fn picture(measurement: &Measurement, choice: &Choice) -> String {

@@ -8,13 +8,14 @@ use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
 use crate::analysis::joint::{self, Candidate};
+use crate::document;
 use crate::engine::joint::SCANS;
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::number::{four, two};
 use crate::options::SearchArguments;
-use crate::output::{self, Format, OutputArguments, deliver};
+use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
 use crate::result::json::provenance::provenance;
@@ -197,5 +198,5 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
         "cost_separate": fitted.separate,
         "scans": scans,
     });
-    output::json(&value)
+    document::json(&value)
 }

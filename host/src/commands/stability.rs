@@ -9,10 +9,11 @@ use serde::Serialize;
 
 use crate::analysis::stability::assess::{Assessment, assess};
 use crate::analysis::stability::built_in;
+use crate::document::json;
 use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
-use crate::output::{Format, OutputArguments, deliver, json};
+use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::model;
 use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;

@@ -6,7 +6,7 @@ use brdfit_core::real::Real;
 use serde_json::{Value, json};
 
 use super::model::{Model, word};
-use crate::output;
+use crate::document;
 
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
@@ -68,7 +68,7 @@ pub fn write(model: &Model) -> String {
             "BRDF": column("sr^-1", 3),
         },
     });
-    output::json(&file)
+    document::json(&file)
 }
 
 /// Now, in UTC as ISO 8601.

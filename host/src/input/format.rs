@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
 use serde::{Serialize, Serializer};
 
+#[cfg(feature = "cli")]
 use super::formats;
 use super::options::ReadOptions;
 use super::raw::RawScan;
@@ -61,12 +60,13 @@ impl Serialize for Format {
     }
 }
 
-impl ValueEnum for Format {
+#[cfg(feature = "cli")]
+impl clap::ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Format] {
         &formats::ALL
     }
 
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name).help(self.about))
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(self.name).help(self.about))
     }
 }

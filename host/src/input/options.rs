@@ -1,101 +1,108 @@
 //! What the user says about files, and what they were taken for.
 
+#[cfg(feature = "cli")]
+mod parse;
+
 use std::fmt;
 
-use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::about::Kind;
 use super::format::Format;
-use super::part::{self, Part};
+use super::part::Part;
 use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, WavelengthUnit};
 use crate::error::Error;
 
 /// How files are read; all but `input_format` hold for each scan.
-#[derive(Args, Clone, Debug, Default, PartialEq, Serialize)]
-#[command(next_help_heading = "What the files hold")]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
+#[cfg_attr(feature = "cli", command(next_help_heading = "What the files hold"))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ReadOptions {
     /// Format of the files [default: known by their content]
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "FORMAT"))]
     pub input_format: Option<Format>,
     /// Scans to take, by the name of their column, wavelength or polarisation [default: all]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME,...", value_delimiter = ','))]
     pub column: Vec<String>,
     /// What the values are [default: what the file says, or brdf]
-    #[arg(long, value_enum, value_name = "QUANTITY")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "QUANTITY"))]
     pub quantity: Option<Quantity>,
     /// Unit of the angles [default: the format's]
-    #[arg(long, value_enum, value_name = "UNIT")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "UNIT"))]
     pub angles: Option<Angles>,
     /// Sign of theta_s on the side of the specular peak [default: positive, if the scan does not contradict]
-    #[arg(long, value_enum, value_name = "SIGN")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "SIGN"))]
     pub forward: Option<Forward>,
     /// What the values are counted in [default: what their name says, or plain]
-    #[arg(long, value_enum, value_name = "UNIT")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "UNIT"))]
     pub value_unit: Option<ValueUnit>,
     /// Unit of a column of wavelengths [default: what its name says, or by their size]
-    #[arg(long, value_enum, value_name = "UNIT")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "UNIT"))]
     pub wavelength_unit: Option<WavelengthUnit>,
     /// How rows of s and p polarisation are taken
-    #[arg(long, value_enum, value_name = "HOW", default_value = "apart")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "HOW", default_value = "apart"))]
     pub polarisation: Polarisation,
     /// What columns hold, by their numbers or names, such as theta_s=2,brdf=3
-    #[arg(long, value_name = "NAME=COLUMN,...", value_delimiter = ',', value_parser = part::parse, help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME=COLUMN,...", value_delimiter = ',', value_parser = super::part::parse, help_heading = TABLES))]
     pub columns: Vec<(Part, String)>,
     /// Makes a scan of each content of these columns
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES))]
     pub split: Vec<String>,
     /// Leaves columns aside that could matter
-    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES))]
     pub ignore: Vec<String>,
     /// Takes rows that repeat a direction at another value as repeated measurements
-    #[arg(long, help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, help_heading = TABLES))]
     pub repeats: bool,
     /// Angle of incidence of a file without one, degrees; of several files one each [default: from a remark or the file's name]
-    #[arg(long, value_name = "DEG,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = theta_i, help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = parse::theta_i, help_heading = TABLES))]
     pub theta_i: Vec<f64>,
     /// Takes all files as parts of one scan, such as one file an angle of incidence
-    #[arg(long, help_heading = TABLES)]
+    #[cfg_attr(feature = "cli", arg(long, help_heading = TABLES))]
     pub one_scan: bool,
     /// Takes all directions of a MERL file, one in 97 bins or as --thin says, and not only those in plane
-    #[arg(long)]
+    #[cfg_attr(feature = "cli", arg(long))]
     pub merl_whole: bool,
     /// Leaves out rows without a valid value or angle, and says how many
-    #[arg(long, help_heading = "What is left out")]
+    #[cfg_attr(feature = "cli", arg(long, help_heading = "What is left out"))]
     pub drop_invalid: bool,
     /// Leaves out directions within this angle of that of incidence, where a detector blocks the beam, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "What is left out")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", value_parser = parse::angle, help_heading = "What is left out"))]
     pub mask_retro: Option<f64>,
     /// Leaves out theta_i and theta_s beyond this, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, help_heading = "What is left out")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG", value_parser = parse::angle, help_heading = "What is left out"))]
     pub max_angle: Option<f64>,
     /// Leaves out values from this on, where the detector saturates, in the unit of the file
-    #[arg(long, value_name = "X", help_heading = "What is left out")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "X", help_heading = "What is left out"))]
     pub max_value: Option<f64>,
     /// Keeps one in N rows
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "What is left out")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "What is left out"))]
     pub thin: Option<u32>,
     /// Coverage factor of uncertainties whose names give none: they are divided by it
-    #[arg(long, value_name = "K", value_parser = positive, help_heading = "Weights")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "K", value_parser = parse::positive, help_heading = "Weights"))]
     pub coverage: Option<f64>,
     /// Where weights come from
-    #[arg(
-        long,
-        value_enum,
-        value_name = "KIND",
-        default_value = "file",
-        help_heading = "Weights"
+    #[cfg_attr(
+        feature = "cli",
+        arg(
+            long,
+            value_enum,
+            value_name = "KIND",
+            default_value = "file",
+            help_heading = "Weights"
+        )
     )]
     pub weights: Weights,
     /// Relative standard deviation that is added to each in square
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = not_negative, help_heading = "Weights")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse::not_negative, help_heading = "Weights"))]
     pub sigma_floor: f64,
     /// Factor of the residuals at one angle of incidence; repeatable
-    #[arg(long, value_name = "DEG=FACTOR", value_parser = weight_angle, help_heading = "Weights")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "DEG=FACTOR", value_parser = parse::weight_angle, help_heading = "Weights"))]
     pub weight_angle: Vec<(f64, f64)>,
 }
 
 /// Where the help has the options of tables alone.
+#[cfg(feature = "cli")]
 const TABLES: &str = "Tables";
 
 impl ReadOptions {
@@ -146,7 +153,8 @@ impl ReadOptions {
 }
 
 /// Where weights come from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
     /// Standard deviations or weights in the file, if it has any
@@ -190,41 +198,4 @@ impl fmt::Display for ReadAs {
             "{format}: {quantity} over {angles}, specular peak at theta_s = {sign}theta_i{weights}"
         )
     }
-}
-
-fn number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_| format!("'{text}' is not a number"))
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        x if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("it must be above 0".to_string()),
-    }
-}
-
-fn theta_i(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        x if x.abs() < 90.0 => Ok(x),
-        _ => Err("it must be an angle between -90 and 90 degrees".to_string()),
-    }
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        x if x >= 0.0 && x.is_finite() => Ok(x),
-        _ => Err("it must not be negative".to_string()),
-    }
-}
-
-fn angle(text: &str) -> Result<f64, String> {
-    match number(text)? {
-        x if (0.0..=180.0).contains(&x) => Ok(x),
-        _ => Err("it must be an angle in degrees".to_string()),
-    }
-}
-
-fn weight_angle(text: &str) -> Result<(f64, f64), String> {
-    let (theta_i, factor) = text.split_once('=').ok_or("write DEG=FACTOR, such as 60=0.5")?;
-    Ok((angle(theta_i)?, not_negative(factor)?))
 }

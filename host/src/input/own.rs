@@ -5,8 +5,8 @@ use brdfit_core::real::Real;
 use super::azimuth;
 use super::facts::OWN;
 use super::{Measurement, label};
+use crate::document::write_row;
 use crate::number::shortest;
-use crate::output::write_row;
 
 /// The samples of scans as a table: angles in degrees where these read back to the same bits, and else in radians; BRDF in sr^-1.
 ///

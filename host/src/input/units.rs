@@ -1,13 +1,13 @@
 //! What the numbers of a file mean: units of angles, the quantity of the values, the sign of theta_s.
 
 use brdfit_core::real::Real;
-use clap::ValueEnum;
 use serde::Serialize;
 
 use crate::number::shortest;
 
 /// The unit of angles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Angles {
     /// Degrees
@@ -64,7 +64,8 @@ pub fn azimuth(degrees: f64) -> f64 {
 }
 
 /// Where theta_s is positive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Forward {
     /// The specular peak is at theta_s = +theta_i, or at an azimuth of 180 degrees
@@ -75,7 +76,8 @@ pub enum Forward {
 }
 
 /// What the numbers of the values are counted in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ValueUnit {
     /// Their own unit, as they stand
@@ -85,7 +87,8 @@ pub enum ValueUnit {
 }
 
 /// The unit of wavelengths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WavelengthUnit {
     /// Nanometres
@@ -101,7 +104,8 @@ pub enum WavelengthUnit {
 }
 
 /// How rows of the two polarisations are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Polarisation {
     /// Each is a scan of its own
@@ -112,7 +116,8 @@ pub enum Polarisation {
 }
 
 /// What is tabulated; f is the BRDF in sr^-1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// f
@@ -122,7 +127,7 @@ pub enum Quantity {
     /// log10 f
     Log10Brdf,
     /// f cos(theta_s), the cosine-corrected BRDF
-    #[value(alias = "ccbrdf")]
+    #[cfg_attr(feature = "cli", value(alias = "ccbrdf"))]
     BrdfCos,
     /// pi f, the reflectance factor
     Brf,

@@ -2,8 +2,8 @@
 
 use super::columns::{Row, of_fits, of_minima};
 use crate::analysis::fit::FittedScan;
+use crate::document::write_row;
 use crate::engine::Model;
-use crate::output::write_row;
 
 /// One row a scan, or with `minima` one row a distinct minimum.
 pub fn csv(scans: &[FittedScan], minima: bool) -> String {

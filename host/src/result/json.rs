@@ -12,9 +12,9 @@ use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
 use crate::analysis::hints::Hint;
+use crate::document;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
-use crate::output;
 pub use by_name::ByName;
 pub use choice::{Selection, selection};
 use provenance::{Provenance, provenance};
@@ -123,7 +123,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
 pub fn json(scans: &[FittedScan]) -> String {
     let documents: Vec<_> = scans.iter().map(document).collect();
     match documents.as_slice() {
-        [one] => output::json(one),
-        several => output::json(&several),
+        [one] => document::json(one),
+        several => document::json(&several),
     }
 }

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
+use crate::document::write_row;
 use crate::error::Error;
 use crate::input::STDIN;
-use crate::output::write_row;
 use crate::records::record::{Record, Rows, RowsIn, Written, cells};
 use crate::result::cell::{Cell, Kind};
 

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
+use crate::document::{self, write_row};
 use crate::number::shortest;
-use crate::output::{self, write_row};
 use crate::result::json::provenance::Provenance;
 
 #[derive(Serialize)]
@@ -19,7 +19,7 @@ struct Document<'a> {
 
 /// One object with everything, and where the scan is from if it was read.
 pub fn json(scans: &[ScanStudy], seeds: u32, provenance: Option<Provenance>) -> String {
-    output::json(&Document {
+    document::json(&Document {
         seeds,
         scans,
         provenance,

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use super::{Angle, Inspected};
 use crate::analysis::hints::Hint;
+use crate::document;
 use crate::input::about::Used;
 use crate::input::{LeftOut, ReadAs};
-use crate::output;
 
 #[derive(Serialize)]
 struct JsonScan<'a> {
@@ -38,8 +38,8 @@ struct JsonAngle {
 pub fn json(scans: &[Inspected]) -> String {
     let objects: Vec<JsonScan> = scans.iter().map(scan).collect();
     match objects.as_slice() {
-        [one] => output::json(one),
-        several => output::json(&several),
+        [one] => document::json(one),
+        several => document::json(&several),
     }
 }
 

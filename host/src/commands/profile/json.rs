@@ -6,8 +6,8 @@ use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{Interval, Profile};
+use crate::document;
 use crate::engine::Outcome;
-use crate::output;
 use crate::result::json::provenance::{Provenance, provenance};
 use crate::result::json::{Selection, selection};
 
@@ -104,7 +104,7 @@ pub fn write(findings: &Findings) -> String {
                 .collect(),
         }),
     };
-    output::json(&document)
+    document::json(&document)
 }
 
 fn parameter(profile: &Profile, outcome: &Outcome) -> Parameter {

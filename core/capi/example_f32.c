@@ -65,8 +65,8 @@ static brdfit_error search(const brdfit_scan_f32 *scan, const brdfit_options_f32
     brdfit_error error = brdfit_search_f32(scan, options, minima, MINIMA, &found);
     if (error)
         return error;
-    printf("search, terms %u: %u distinct minima, passes %u and %u\n", (unsigned)options->terms, (unsigned)found.minima,
-           (unsigned)found.cost_passes, (unsigned)found.linearize_passes);
+    printf("search, model %u, terms %u: %u distinct minima, passes %u and %u\n", (unsigned)options->model, (unsigned)options->terms,
+           (unsigned)found.minima, (unsigned)found.cost_passes, (unsigned)found.linearize_passes);
     print_result(&found.best);
     for (size_t i = 0; i < found.minima; i++) {
         printf("  minimum with %u hits\n", (unsigned)minima[i].hits);
@@ -148,6 +148,10 @@ int main(void) {
     if (!error)
         error = in_pieces(&scan, &options);
     options.terms = BRDFIT_DIFFUSE | BRDFIT_SURFACE;
+    if (!error)
+        error = search(&scan, &options);
+    options.terms = BRDFIT_ALL;
+    options.model = BRDFIT_MODEL_GGX;
     if (!error)
         error = search(&scan, &options);
     mistakes(&scan);

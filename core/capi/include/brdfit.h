@@ -61,6 +61,16 @@
 #define BRDFIT_ALL 15
 
 /**
+ * The model of Eq. 14: Beckmann's distribution of facets.
+ */
+#define BRDFIT_MODEL_BECKMANN 0
+
+/**
+ * The same with the distribution of Trowbridge and Reitz, called GGX, whose tails are wider; of it the terms are BRDFIT_ALL.
+ */
+#define BRDFIT_MODEL_GGX 1
+
+/**
  * Samples that one block holds.
  */
 #define BRDFIT_BLOCK_SAMPLES 16
@@ -154,7 +164,7 @@ enum brdfit_error
    */
   BRDFIT_ERROR_BOUNDS = -9,
   /**
-   * There is no model of just these terms.
+   * There is no such model, or none of just these terms.
    */
   BRDFIT_ERROR_TERMS = -10,
   /**
@@ -220,7 +230,7 @@ typedef int32_t brdfit_stop;
 #endif // __cplusplus
 
 /**
- * The six parameters of Eq. 14, dimensionless; those of absent terms are 0, but m and n are 1.
+ * The six parameters of Eq. 14 and of GGX, dimensionless; those of absent terms are 0, but m and n are 1.
  */
 typedef struct {
   /**
@@ -261,6 +271,10 @@ typedef struct {
    * A sum of BRDFIT_DIFFUSE and others; BRDFIT_ALL.
    */
   uint32_t terms;
+  /**
+   * BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX; BRDFIT_MODEL_BECKMANN.
+   */
+  uint32_t model;
   /**
    * Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
    */
@@ -418,7 +432,7 @@ typedef struct {
 } brdfit_found_f32;
 
 /**
- * The six parameters of Eq. 14, dimensionless; those of absent terms are 0, but m and n are 1.
+ * The six parameters of Eq. 14 and of GGX, dimensionless; those of absent terms are 0, but m and n are 1.
  */
 typedef struct {
   /**
@@ -459,6 +473,10 @@ typedef struct {
    * A sum of BRDFIT_DIFFUSE and others; BRDFIT_ALL.
    */
   uint32_t terms;
+  /**
+   * BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX; BRDFIT_MODEL_BECKMANN.
+   */
+  uint32_t model;
   /**
    * Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
    */
@@ -660,7 +678,7 @@ brdfit_error brdfit_scan_add_f32(brdfit_scan_f32 *scan,
                                  size_t count);
 
 /**
- * The BRDF of the model with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
+ * The BRDF of Eq. 14 with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
  *
  * Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON, PARAMS.
  */
@@ -669,6 +687,18 @@ brdfit_error brdfit_brdf_f32(float theta_i,
                              float delta_phi,
                              const brdfit_params_f32 *params,
                              float *brdf);
+
+/**
+ * The same of any model: BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
+ *
+ * Errors: those of brdfit_brdf_f32(), and TERMS where there is no such model.
+ */
+brdfit_error brdfit_model_brdf_f32(uint32_t model,
+                                   float theta_i,
+                                   float theta_s,
+                                   float delta_phi,
+                                   const brdfit_params_f32 *params,
+                                   float *brdf);
 
 /**
  * A start worth a fit: number `index` of the sequence of options->seed, with the weights that fit best there. One pass. Null options are the usual ones.
@@ -745,7 +775,7 @@ brdfit_error brdfit_scan_add_f64(brdfit_scan_f64 *scan,
                                  size_t count);
 
 /**
- * The BRDF of the model with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
+ * The BRDF of Eq. 14 with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
  *
  * Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON, PARAMS.
  */
@@ -754,6 +784,18 @@ brdfit_error brdfit_brdf_f64(double theta_i,
                              double delta_phi,
                              const brdfit_params_f64 *params,
                              double *brdf);
+
+/**
+ * The same of any model: BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
+ *
+ * Errors: those of brdfit_brdf_f64(), and TERMS where there is no such model.
+ */
+brdfit_error brdfit_model_brdf_f64(uint32_t model,
+                                   double theta_i,
+                                   double theta_s,
+                                   double delta_phi,
+                                   const brdfit_params_f64 *params,
+                                   double *brdf);
 
 /**
  * A start worth a fit: number `index` of the sequence of options->seed, with the weights that fit best there. One pass. Null options are the usual ones.
@@ -825,7 +867,7 @@ BRDFIT_ASSERT(sizeof(brdfit_fit_f32) == BRDFIT_FIT_SIZE_F32);
 BRDFIT_ASSERT(sizeof(brdfit_fit_f64) == BRDFIT_FIT_SIZE_F64);
 BRDFIT_ASSERT(sizeof(brdfit_sample_f32) == 20 && sizeof(brdfit_sample_f64) == 40);
 BRDFIT_ASSERT(sizeof(brdfit_params_f32) == 24 && sizeof(brdfit_params_f64) == 48);
-BRDFIT_ASSERT(sizeof(brdfit_options_f32) == 80 && sizeof(brdfit_options_f64) == 144);
+BRDFIT_ASSERT(sizeof(brdfit_options_f32) == 88 && sizeof(brdfit_options_f64) == 144);
 BRDFIT_ASSERT(sizeof(brdfit_result_f32) == 36 && sizeof(brdfit_result_f64) == 64);
 BRDFIT_ASSERT(sizeof(brdfit_minimum_f32) == 32 && sizeof(brdfit_minimum_f64) == 64);
 #endif

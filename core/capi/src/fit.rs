@@ -1,12 +1,14 @@
-//! Fits and searches, for the set of terms that was chosen.
+//! Fits and searches, for the model and the set of terms that were chosen.
 
 use core::mem::MaybeUninit;
 
 use brdfit_core::brdf::{ALL, Params, parameters};
 use brdfit_core::geometry::Block;
 use brdfit_core::lm::Fit;
+use brdfit_core::lobes::{Beckmann, Distribution};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
+use brdfit_core::residuals::{Residuals, Scan};
 use brdfit_core::search::{Region, Scene};
 
 use crate::Done;
@@ -44,25 +46,31 @@ impl<R> State<R> {
     }
 }
 
-/// Calls a function of any set of terms with those chosen at run time.
-macro_rules! with_terms {
-    ($terms:expr, $function:ident::<$R:ident>($($argument:expr),*)) => {
-        match $terms {
-            0b1111 => $function::<$R, 0b1111, 6>($($argument),*),
+/// The residuals of a model of Eq. 14 with distribution `D`; its parameters are those of [`Scan`].
+type Of<'a, R, D, const TERMS: u8, const P: usize> = Residuals<'a, R, Microfacet<TERMS, D>, P>;
+
+/// Calls a function of any model and set of terms with those chosen at run time.
+macro_rules! with_model {
+    ($options:expr, $function:ident::<$R:ident>($($argument:expr),*)) => {
+        match ($options.model, $options.terms) {
+            #[cfg(feature = "ggx")]
+            (BRDFIT_MODEL_GGX, 0b1111) => $function::<$R, brdfit_core::lobes::Ggx, 0b1111, 6>($($argument),*),
+            (1.., _) => Err(brdfit_error::Terms),
+            (BRDFIT_MODEL_BECKMANN, 0b1111) => $function::<$R, Beckmann, 0b1111, 6>($($argument),*),
             #[cfg(feature = "sets")]
-            0b0001 => $function::<$R, 0b0001, 1>($($argument),*),
+            (_, 0b0001) => $function::<$R, Beckmann, 0b0001, 1>($($argument),*),
             #[cfg(feature = "sets")]
-            0b0010 => $function::<$R, 0b0010, 3>($($argument),*),
+            (_, 0b0010) => $function::<$R, Beckmann, 0b0010, 3>($($argument),*),
             #[cfg(feature = "sets")]
-            0b1010 => $function::<$R, 0b1010, 4>($($argument),*),
+            (_, 0b1010) => $function::<$R, Beckmann, 0b1010, 4>($($argument),*),
             #[cfg(feature = "sets")]
-            0b1110 => $function::<$R, 0b1110, 5>($($argument),*),
+            (_, 0b1110) => $function::<$R, Beckmann, 0b1110, 5>($($argument),*),
             #[cfg(feature = "sets")]
-            0b0011 => $function::<$R, 0b0011, 4>($($argument),*),
+            (_, 0b0011) => $function::<$R, Beckmann, 0b0011, 4>($($argument),*),
             #[cfg(feature = "sets")]
-            0b1011 => $function::<$R, 0b1011, 5>($($argument),*),
+            (_, 0b1011) => $function::<$R, Beckmann, 0b1011, 5>($($argument),*),
             #[cfg(feature = "sets")]
-            0b0111 => $function::<$R, 0b0111, 5>($($argument),*),
+            (_, 0b0111) => $function::<$R, Beckmann, 0b0111, 5>($($argument),*),
             _ => Err(brdfit_error::Terms),
         }
     };
@@ -80,8 +88,8 @@ pub unsafe fn candidate<R: Real>(
 ) -> Done {
     // SAFETY: the contract of the header.
     let ((blocks, samples), options, start) = unsafe { (blocks_of(scan)?, options_at(options)?, output(start)?) };
-    start.write(with_terms!(
-        options.terms,
+    start.write(with_model!(
+        options,
         candidate_of::<R>(blocks, samples, &options, index)
     )?);
     Ok(())
@@ -89,14 +97,14 @@ pub unsafe fn candidate<R: Real>(
 
 // Each set of terms has a stack frame of its own, or that of the caller would hold those of all.
 #[inline(never)]
-fn candidate_of<R: Real, const TERMS: u8, const P: usize>(
+fn candidate_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     blocks: &[Block<R>],
     samples: usize,
     options: &brdfit_options<R>,
     index: u64,
 ) -> Result<brdfit_params<R>, brdfit_error> {
     enough::<P>(samples)?;
-    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let scan = Of::<R, D, TERMS, P>::new(blocks);
     let x = scan
         .candidate(&bounds::<R, TERMS, P>(options), options.seed, index, Region::Everywhere)
         .x;
@@ -121,14 +129,11 @@ pub unsafe fn fit_begin<R: Real>(
     if !Params::from(*start).to_array().iter().all(|value| value.is_finite()) {
         return Err(brdfit_error::NotFinite);
     }
-    with_terms!(
-        options.terms,
-        fit_begin_of::<R>(state, blocks, samples, start, &options)
-    )
+    with_model!(options, fit_begin_of::<R>(state, blocks, samples, start, &options))
 }
 
 #[inline(never)]
-fn fit_begin_of<R: Real, const TERMS: u8, const P: usize>(
+fn fit_begin_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     state: &mut MaybeUninit<State<R>>,
     blocks: &[Block<R>],
     samples: usize,
@@ -136,7 +141,7 @@ fn fit_begin_of<R: Real, const TERMS: u8, const P: usize>(
     options: &brdfit_options<R>,
 ) -> Done {
     enough::<P>(samples)?;
-    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let scan = Of::<R, D, TERMS, P>::new(blocks);
     let start = Scan::<R, TERMS, P>::coordinates(&(*start).into());
     let bounds = bounds::<R, TERMS, P>(options);
     let fit = Fit::begin(&scan, &bounds, start, &lm_options(options));
@@ -167,18 +172,18 @@ unsafe fn state_of<R>(fit: *const brdfit_fit<R>) -> Result<*const State<R>, brdf
 pub unsafe fn fit_run<R: Real>(fit: *mut brdfit_fit<R>, scan: *const brdfit_scan<R>, passes: u32) -> Done {
     // SAFETY: the contract of the header.
     let (state, (blocks, samples)) = unsafe { (changed(state_of(fit)?.cast_mut())?, blocks_of(scan)?) };
-    with_terms!(state.options.terms, fit_run_of::<R>(state, blocks, samples, passes))
+    with_model!(state.options, fit_run_of::<R>(state, blocks, samples, passes))
 }
 
 #[inline(never)]
-fn fit_run_of<R: Real, const TERMS: u8, const P: usize>(
+fn fit_run_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     state: &mut State<R>,
     blocks: &[Block<R>],
     samples: usize,
     passes: u32,
 ) -> Done {
     enough::<P>(samples)?;
-    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let scan = Of::<R, D, TERMS, P>::new(blocks);
     // SAFETY: `fit_begin_of` wrote one of this P there, for the terms are the same.
     let fit = unsafe { &mut *state.fit_mut::<P>() };
     let passes = fit.passes.saturating_add(passes);
@@ -194,11 +199,17 @@ fn fit_run_of<R: Real, const TERMS: u8, const P: usize>(
 pub unsafe fn fit_result<R: Real>(fit: *const brdfit_fit<R>, result: *mut brdfit_result<R>) -> Done {
     // SAFETY: the contract of the header.
     let (state, result) = unsafe { (input(state_of(fit)?)?, output(result)?) };
-    result.write(with_terms!(state.options.terms, fit_result_of::<R>(state))?);
+    result.write(with_model!(state.options, fit_result_of::<R>(state))?);
     Ok(())
 }
 
-fn fit_result_of<R: Real, const TERMS: u8, const P: usize>(state: &State<R>) -> Result<brdfit_result<R>, brdfit_error> {
+#[expect(
+    clippy::extra_unused_type_parameters,
+    reason = "the macro gives the distribution to all"
+)]
+fn fit_result_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
+    state: &State<R>,
+) -> Result<brdfit_result<R>, brdfit_error> {
     // SAFETY: as in `fit_run_of`.
     Ok(result::<R, TERMS, P>(unsafe { &*state.fit::<P>() }))
 }
@@ -227,22 +238,19 @@ pub unsafe fn search<R: Real>(
         // SAFETY: the contract of the header.
         unsafe { outputs(minima, capacity) }?
     };
-    found.write(with_terms!(
-        options.terms,
-        search_of::<R>(blocks, samples, &options, minima)
-    )?);
+    found.write(with_model!(options, search_of::<R>(blocks, samples, &options, minima))?);
     Ok(())
 }
 
 #[inline(never)]
-fn search_of<R: Real, const TERMS: u8, const P: usize>(
+fn search_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     blocks: &[Block<R>],
     samples: usize,
     options: &brdfit_options<R>,
     minima: &mut [MaybeUninit<brdfit_minimum<R>>],
 ) -> Result<brdfit_found<R>, brdfit_error> {
     enough::<P>(samples)?;
-    let scan = Scan::<R, TERMS, P>::new(blocks);
+    let scan = Of::<R, D, TERMS, P>::new(blocks);
     let found = brdfit_core::search::search(
         &scan,
         &bounds::<R, TERMS, P>(options),

@@ -31,7 +31,7 @@ pub extern "C" fn brdfit_error_text(error: i32) -> *const c_char {
         -7 => c"a BRDF or a weight is not positive",
         -8 => c"a parameter has a value that it cannot have",
         -9 => c"the bounds are the wrong way round, or not values of their parameters",
-        -10 => c"no model has just these terms",
+        -10 => c"no such model, or none of just these terms",
         -11 => c"a tolerance, the damping or a count is out of range",
         -12 => c"fewer samples than parameters",
         -13 => c"scan or fit was not begun",

@@ -10,13 +10,14 @@ use crate::Done;
 use crate::memory::{optional, output};
 use crate::types::*;
 
-/// Table 1, all terms, and the tolerances of the core.
+/// Table 1, Eq. 14 with all terms, and the tolerances of the core.
 fn default_options<R: Real>() -> brdfit_options<R> {
     let of = |array: [f64; 6]| Params::from_array(array.map(R::of)).into();
     let options = Options::<R>::default();
     brdfit_options {
         seed: 0,
         terms: BRDFIT_ALL,
+        model: BRDFIT_MODEL_BECKMANN,
         candidates: CANDIDATES,
         max_passes: options.max_passes,
         lower: of([0.0, 0.0, 0.0, 1e-5, 1.0, 0.0]),

@@ -1,8 +1,11 @@
 //! Samples -> blocks of the caller; and the model itself.
 
-use brdfit_core::brdf::{ALL, Brdf};
+use brdfit_core::brdf::{ALL, Params};
 use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample, SampleError};
+use brdfit_core::lobes::{Beckmann, Distribution};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
+use brdfit_core::residuals::{Scan, value};
 
 use crate::Done;
 use crate::memory::{changed, input, inputs, output, outputs};
@@ -76,12 +79,23 @@ fn of_sample(error: SampleError) -> brdfit_error {
     }
 }
 
-pub unsafe fn brdf<R: Real>(direction: [R; 3], params: *const brdfit_params<R>, brdf: *mut R) -> Done {
+pub unsafe fn brdf<R: Real>(model: u32, direction: [R; 3], params: *const brdfit_params<R>, brdf: *mut R) -> Done {
     // SAFETY: the contract of the header.
     let (params, brdf) = unsafe { (input(params)?, output(brdf)?) };
     check_params(params)?;
     let [theta_i, theta_s, delta_phi] = direction;
     let geometry = Geometry::new(theta_i, theta_s, delta_phi).map_err(of_sample)?;
-    brdf.write(Brdf::<R, ALL>::new(&(*params).into()).ln_f(&geometry).exp());
+    let params = Params::from(*params);
+    brdf.write(match model {
+        BRDFIT_MODEL_BECKMANN => brdf_of::<R, Beckmann>(&params, geometry),
+        #[cfg(feature = "ggx")]
+        BRDFIT_MODEL_GGX => brdf_of::<R, brdfit_core::lobes::Ggx>(&params, geometry),
+        _ => return Err(brdfit_error::Terms),
+    });
     Ok(())
+}
+
+fn brdf_of<R: Real, D: Distribution>(params: &Params<R>, geometry: Geometry<R>) -> R {
+    let x = Scan::<R, ALL, 6>::coordinates(params);
+    value::<R, Microfacet<ALL, D>, 6, 6>(&x, geometry.into()).exp()
 }

@@ -47,7 +47,7 @@ pub unsafe extern "C" fn brdfit_scan_add_f32(
     code(unsafe { scan::scan_add(scan, samples, count) })
 }
 
-/// The BRDF of the model with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
+/// The BRDF of Eq. 14 with all terms, sr^-1, at least the smallest normal number; angles in radians as in brdfit_sample.
 ///
 /// Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON, PARAMS.
 #[unsafe(no_mangle)]
@@ -59,7 +59,23 @@ pub unsafe extern "C" fn brdfit_brdf_f32(
     brdf: *mut f32,
 ) -> brdfit_error {
     // SAFETY: see the top.
-    code(unsafe { scan::brdf([theta_i, theta_s, delta_phi], params, brdf) })
+    code(unsafe { scan::brdf(BRDFIT_MODEL_BECKMANN, [theta_i, theta_s, delta_phi], params, brdf) })
+}
+
+/// The same of any model: BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
+///
+/// Errors: those of brdfit_brdf_f32(), and TERMS where there is no such model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_model_brdf_f32(
+    model: u32,
+    theta_i: f32,
+    theta_s: f32,
+    delta_phi: f32,
+    params: *const brdfit_params<f32>,
+    brdf: *mut f32,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { scan::brdf(model, [theta_i, theta_s, delta_phi], params, brdf) })
 }
 
 /// A start worth a fit: number `index` of the sequence of options->seed, with the weights that fit best there. One pass. Null options are the usual ones.

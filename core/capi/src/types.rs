@@ -17,6 +17,11 @@ pub const BRDFIT_ABSORBING: u32 = 8;
 /// All terms: six parameters.
 pub const BRDFIT_ALL: u32 = 15;
 
+/// The model of Eq. 14: Beckmann's distribution of facets.
+pub const BRDFIT_MODEL_BECKMANN: u32 = 0;
+/// The same with the distribution of Trowbridge and Reitz, called GGX, whose tails are wider; of it the terms are BRDFIT_ALL.
+pub const BRDFIT_MODEL_GGX: u32 = 1;
+
 /// Samples that one block holds.
 pub const BRDFIT_BLOCK_SAMPLES: usize = 16;
 /// Size of a block, in numbers of its type.
@@ -40,7 +45,7 @@ const _: () = assert!(BRDFIT_ALL == ALL as u32);
 const _: () = assert!(BRDFIT_BLOCK_SAMPLES == LANES);
 const _: () = assert!(size_of::<brdfit_sample<f32>>() == 20 && size_of::<brdfit_sample<f64>>() == 40);
 const _: () = assert!(size_of::<brdfit_params<f32>>() == 24 && size_of::<brdfit_params<f64>>() == 48);
-const _: () = assert!(size_of::<brdfit_options<f32>>() == 80 && size_of::<brdfit_options<f64>>() == 144);
+const _: () = assert!(size_of::<brdfit_options<f32>>() == 88 && size_of::<brdfit_options<f64>>() == 144);
 const _: () = assert!(size_of::<brdfit_result<f32>>() == 36 && size_of::<brdfit_result<f64>>() == 64);
 const _: () = assert!(size_of::<brdfit_minimum<f32>>() == 32 && size_of::<brdfit_minimum<f64>>() == 64);
 // A block is just as large as C believes, for blocks lie side by side; a fit is at most that.
@@ -81,7 +86,7 @@ pub enum brdfit_error {
     Params = -8,
     /// Lower bounds are above the upper ones, or a bound has a value that its parameter cannot have.
     Bounds = -9,
-    /// There is no model of just these terms.
+    /// There is no such model, or none of just these terms.
     Terms = -10,
     /// A tolerance, the damping or a number of passes or candidates is out of range.
     Options = -11,
@@ -137,7 +142,7 @@ pub struct brdfit_sample<R> {
     pub weight: R,
 }
 
-/// The six parameters of Eq. 14, dimensionless; those of absent terms are 0, but m and n are 1.
+/// The six parameters of Eq. 14 and of GGX, dimensionless; those of absent terms are 0, but m and n are 1.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct brdfit_params<R> {
@@ -189,6 +194,8 @@ pub struct brdfit_options<R> {
     pub seed: u64,
     /// A sum of BRDFIT_DIFFUSE and others; BRDFIT_ALL.
     pub terms: u32,
+    /// BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX; BRDFIT_MODEL_BECKMANN.
+    pub model: u32,
     /// Largest number of candidates of a search, at least 1; 435. Of more than that all are made.
     pub candidates: u32,
     /// Largest number of passes of a fit, at least 1; 500.

@@ -6,14 +6,16 @@ use std::mem::zeroed;
 use std::path::Path;
 use std::ptr::{null, null_mut};
 
-use brdfit::engine::{self, FitOptions, Precision, TERM_SETS, Values};
+use brdfit::engine::{self, FitOptions, Model, Precision, TERM_SETS, Values};
 use brdfit_capi::brdfit_error as Error;
 use brdfit_capi::*;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::{self, Options};
+use brdfit_core::lobes::{Beckmann, Distribution, Ggx};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Scan;
+use brdfit_core::residuals::{Residuals, Scan, value};
 
 /// Test data 1 with noise, each sample with a weight.
 fn samples() -> Vec<Sample<f64>> {
@@ -85,38 +87,44 @@ fn same(c: brdfit_params<f32>, host: Values) {
 
 #[test]
 fn a_search_gives_the_bits_of_the_host() {
-    let memory = with_samples();
     for terms in TERM_SETS {
-        let expected = FitOptions {
-            terms,
-            precision: Precision::F32,
-            ..FitOptions::default()
-        };
-        let expected = engine::fit(&samples(), &expected).unwrap();
-        let options = brdfit_options {
-            terms: terms.into(),
-            ..usual()
-        };
-        // SAFETY: any bits but those of `stop`, where 0 is right, are values; the pointers are of as many objects as is said.
-        let (found, minima) = unsafe {
-            let (mut found, mut minima) = (zeroed(), [zeroed(); 32]);
-            let done = brdfit_search_f32(&memory.scan, &options, minima.as_mut_ptr(), 32, &mut found);
-            assert_eq!(done, Error::None);
-            (found, minima)
-        };
-        same(found.best.params, expected.params);
-        assert_eq!(f64::from(found.best.cost), expected.cost);
-        assert_eq!(found.best.stop, Some(expected.stop).into());
-        let evaluations = expected.evaluations;
-        assert_eq!(
-            [found.cost_passes, found.linearize_passes],
-            [evaluations.cost, evaluations.linearize]
-        );
-        assert_eq!(found.minima, expected.minima.len());
-        for (minimum, expected) in minima.iter().zip(&expected.minima) {
-            same(minimum.params, expected.params);
-            assert_eq!(minimum.hits, expected.hits);
-        }
+        search_as_the_host(terms, BRDFIT_MODEL_BECKMANN, Model::paper());
+    }
+    search_as_the_host(ALL, BRDFIT_MODEL_GGX, Model::find("ggx").unwrap());
+}
+
+fn search_as_the_host(terms: u8, model: u32, of_host: &'static Model) {
+    let memory = with_samples();
+    let expected = FitOptions {
+        terms,
+        precision: Precision::F32,
+        ..FitOptions::of(of_host)
+    };
+    let expected = engine::fit(&samples(), &expected).unwrap();
+    let options = brdfit_options {
+        terms: terms.into(),
+        model,
+        ..usual()
+    };
+    // SAFETY: any bits but those of `stop`, where 0 is right, are values; the pointers are of as many objects as is said.
+    let (found, minima) = unsafe {
+        let (mut found, mut minima) = (zeroed(), [zeroed(); 32]);
+        let done = brdfit_search_f32(&memory.scan, &options, minima.as_mut_ptr(), 32, &mut found);
+        assert_eq!(done, Error::None);
+        (found, minima)
+    };
+    same(found.best.params, expected.params);
+    assert_eq!(f64::from(found.best.cost), expected.cost);
+    assert_eq!(found.best.stop, Some(expected.stop).into());
+    let evaluations = expected.evaluations;
+    assert_eq!(
+        [found.cost_passes, found.linearize_passes],
+        [evaluations.cost, evaluations.linearize]
+    );
+    assert_eq!(found.minima, expected.minima.len());
+    for (minimum, expected) in minima.iter().zip(&expected.minima) {
+        same(minimum.params, expected.params);
+        assert_eq!(minimum.hits, expected.hits);
     }
 }
 
@@ -140,11 +148,16 @@ fn the_caller_decides_how_many_minima_are_kept() {
 
 #[test]
 fn a_fit_in_pieces_gives_the_bits_of_one_at_once() {
+    in_pieces_as_at_once::<Beckmann>(BRDFIT_MODEL_BECKMANN);
+    in_pieces_as_at_once::<Ggx>(BRDFIT_MODEL_GGX);
+}
+
+fn in_pieces_as_at_once<D: Distribution>(model: u32) {
     let memory = with_samples();
     let start = brdfit_params::from(Params::from_array([0.1, 1.0, 0.01, 0.2, 1.5, 0.5]));
-    let options = usual();
+    let options = brdfit_options { model, ..usual() };
     let blocks = engine::blocks::<f32>(&samples()).unwrap();
-    let scan = Scan::<f32, ALL, 6>::new(&blocks);
+    let scan = Residuals::<f32, Microfacet<ALL, D>, 6>::new(&blocks);
     let bounds = Scan::<f32, ALL, 6>::bounds(&options.lower.into(), &options.upper.into());
     let x = Scan::<f32, ALL, 6>::coordinates(&start.into());
     let expected = lm::fit(&scan, &bounds, x, &Options::default());
@@ -153,7 +166,7 @@ fn a_fit_in_pieces_gives_the_bits_of_one_at_once() {
         let result = unsafe {
             let (mut fit, mut result): (_, brdfit_result<f32>) = (zeroed(), zeroed());
             assert_eq!(
-                brdfit_fit_begin_f32(&mut fit, &memory.scan, &start, null()),
+                brdfit_fit_begin_f32(&mut fit, &memory.scan, &start, &options),
                 Error::None
             );
             while {
@@ -179,14 +192,25 @@ fn a_fit_in_pieces_gives_the_bits_of_one_at_once() {
 #[test]
 fn the_model_gives_the_bits_of_the_host() {
     let params = Params::from_array([0.1, 10.0, 0.01, 0.1, 3.0, 1.0]);
+    let x = Scan::<f32, ALL, 6>::coordinates(&params);
     let model = Brdf::<f32, ALL>::new(&params);
     for step in -15..=15 {
-        let direction = [0.75, step as f32 * 0.1, step as f32 * 0.3];
-        let expected = model.ln_f(&Geometry::new(direction[0], direction[1], direction[2]).unwrap());
-        let mut value = 0.0;
+        let [theta_i, theta_s, delta_phi] = [0.75, step as f32 * 0.1, step as f32 * 0.3];
+        let geometry = Geometry::new(theta_i, theta_s, delta_phi).unwrap();
+        let beckmann = Real::exp(model.ln_f(&geometry));
+        let ggx = Real::exp(value::<f32, Microfacet<ALL, Ggx>, 6, 6>(&x, geometry.into()));
+        assert_ne!(beckmann, ggx);
+        let params = params.into();
         // SAFETY: as above.
-        let done = unsafe { brdfit_brdf_f32(direction[0], direction[1], direction[2], &params.into(), &mut value) };
-        assert_eq!((done, value), (Error::None, Real::exp(expected)));
+        unsafe {
+            let mut brdf = 0.0;
+            let done = brdfit_brdf_f32(theta_i, theta_s, delta_phi, &params, &mut brdf);
+            assert_eq!((done, brdf), (Error::None, beckmann));
+            for (model, expected) in [(BRDFIT_MODEL_BECKMANN, beckmann), (BRDFIT_MODEL_GGX, ggx)] {
+                let done = brdfit_model_brdf_f32(model, theta_i, theta_s, delta_phi, &params, &mut brdf);
+                assert_eq!((done, brdf), (Error::None, expected));
+            }
+        }
     }
 }
 
@@ -305,6 +329,10 @@ fn mistakes_with_fits_are_errors() {
         assert_eq!(brdfit_brdf_f32(0.1, 0.1, 0.0, &bad, &mut value), Error::NotFinite);
         let bad = brdfit_params { n: 0.5, ..start };
         assert_eq!(brdfit_brdf_f32(0.1, 0.1, 0.0, &bad, &mut value), Error::Params);
+        assert_eq!(
+            brdfit_model_brdf_f32(2, 0.1, 0.1, 0.0, &start, &mut value),
+            Error::Terms
+        );
         assert_eq!(brdfit_options_init_f32(null_mut()), Error::Null);
     }
 }
@@ -328,6 +356,11 @@ fn mistakes_with_options_are_errors() {
     assert_eq!(wrong(&|options| options.terms = BRDFIT_VOLUME), Error::Terms);
     assert_eq!(wrong(&|options| options.terms = 0), Error::Terms);
     assert_eq!(wrong(&|options| options.terms = 16), Error::Terms);
+    assert_eq!(wrong(&|options| options.model = 2), Error::Terms);
+    assert_eq!(
+        wrong(&|options| (options.model, options.terms) = (BRDFIT_MODEL_GGX, BRDFIT_DIFFUSE)),
+        Error::Terms
+    );
     assert_eq!(wrong(&|options| options.candidates = 0), Error::Options);
     assert_eq!(wrong(&|options| options.max_passes = 0), Error::Options);
     assert_eq!(wrong(&|options| options.cost_tolerance = f32::NAN), Error::Options);

@@ -72,6 +72,9 @@ fuzz_target!(|data: &[u8]| {
     if changes & 1 != 0 {
         options.terms = u32::from(source.byte()) % 17;
     }
+    if changes & 32 != 0 {
+        options.model = u32::from(source.byte()) % 3;
+    }
     if changes & 2 != 0 {
         (options.lower, options.upper) = (source.params(), source.params());
     }
@@ -121,7 +124,7 @@ fuzz_target!(|data: &[u8]| {
             source.number(-1.57, 1.57),
             source.number(0.0, 3.2),
         ];
-        if brdfit_brdf_f64(at[0], at[1], at[2], &params, &mut brdf) == brdfit_error::None {
+        if brdfit_model_brdf_f64(options.model, at[0], at[1], at[2], &params, &mut brdf) == brdfit_error::None {
             assert!(brdf >= f64::MIN_POSITIVE, "{brdf}");
         }
         let mut start = MaybeUninit::zeroed();

@@ -1,17 +1,22 @@
-//! Other people's solvers beside brdfit's, on NIST's certified problems and on the paper's three sets; `benches/peers/run` prepares what is not Rust.
+//! Other people's solvers beside brdfit's, on NIST's certified problems and in a race to the optimum; `benches/peers/run` prepares what is not Rust.
 
-mod brdf;
+#[cfg(ceres)]
+mod ceres;
+mod course;
 mod fits;
+mod globals;
 mod nist;
 mod outside;
+mod profile;
+mod race;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["nist"] => nist::print(),
-        ["brdf", starts] => brdf::print(starts.parse().expect("the number of starts")),
+        ["race"] => race::write(&outside::beside("../results")),
         _ => {
-            eprintln!("say which: nist, or brdf and the number of starts");
+            eprintln!("say which: nist, or race");
             std::process::exit(2);
         }
     }

@@ -190,7 +190,7 @@ fn completions_and_manual_know_every_command() {
         "{page}"
     );
     assert!(page.contains("drop\\-invalid"));
-    assert!(fail(&["man", "woman"]).contains("take one of fit, inspect, report, batch"));
+    assert!(fail(&["man", "woman"]).contains("take one of fit, inspect, report, certify, batch"));
 }
 
 #[test]

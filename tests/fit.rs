@@ -46,6 +46,7 @@ fn json_keeps_its_contract() {
         "derived",
         "stop",
         "minima",
+        "certificate",
         "evaluations",
         "provenance",
     ];

@@ -11,6 +11,7 @@ pub mod joint;
 pub mod paper;
 pub mod paper_sets;
 pub mod profile;
+pub mod proof;
 pub mod reflectance;
 pub mod stability;
 pub mod undetermined;

@@ -6,8 +6,8 @@ use std::io::Write;
 use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
 
 use crate::commands::{
-    batch, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report, simulate,
-    stability,
+    batch, certify, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report,
+    simulate, stability,
 };
 use crate::error::{EXIT_CODE, Error};
 use crate::plain::{self, Lines};
@@ -39,6 +39,7 @@ enum Command {
     Fit(fit::Arguments),
     Inspect(inspect::Arguments),
     Report(report::Arguments),
+    Certify(certify::Arguments),
     Batch(batch::Arguments),
     Merge(merge::Arguments),
     Simulate(simulate::Arguments),
@@ -120,6 +121,7 @@ fn color(arguments: &[OsString], auto: bool) -> bool {
 fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Result<Ended, Error> {
     match command {
         Command::Batch(arguments) => return batch::run(arguments, streams),
+        Command::Certify(arguments) => return certify::run(arguments, streams),
         Command::Fit(arguments) => return fit::run(arguments, streams),
         Command::Inspect(arguments) => inspect::run(arguments, streams),
         Command::Merge(arguments) => return merge::run(arguments, streams),

@@ -5,6 +5,7 @@
 //! | [`reading`] | which files are read, and what their numbers are taken for |
 //! | [`models`] | models, terms, bounds, and several scans together |
 //! | [`uncertainty`] | what a scan tells of the parameters |
+//! | [`certificates`] | a proof that no parameters fit better |
 //! | [`results`] | reports, JSON, the shell, exit codes |
 //! | [`batch`] | many scans, on one machine or several |
 //! | [`exports`] | the model in other programs |
@@ -15,6 +16,8 @@
 pub mod accuracy {}
 #[doc = include_str!("guide/batch.md")]
 pub mod batch {}
+#[doc = include_str!("guide/certificates.md")]
+pub mod certificates {}
 #[doc = include_str!("guide/exports.md")]
 pub mod exports {}
 #[doc = include_str!("guide/how_it_works.md")]

@@ -231,6 +231,6 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .help("take f64, or leave out the row"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
         FitError::Terms(_) | FitError::Interrupted => plain,
-        FitError::NoProof(_) => plain.help("only the model of Eq. 14 has a proof"),
+        FitError::NoProof(_) => plain.help("only --model beckmann has one"),
     }
 }

@@ -29,6 +29,11 @@ pub fn keeping() -> &'static AtomicBool {
     &ASKED
 }
 
+/// Has an interrupt been asked for?
+pub fn asked() -> bool {
+    ASKED.load(Ordering::Relaxed)
+}
+
 /// A program ends at once only while no file is half written.
 pub fn writing() -> MutexGuard<'static, ()> {
     WRITING.lock().unwrap_or_else(PoisonError::into_inner)

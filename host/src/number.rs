@@ -40,14 +40,25 @@ pub fn six(x: f64) -> String {
 
 /// A part with two significant digits, in percent.
 pub fn percent(part: f64) -> String {
+    format!("{:.*} %", decimals(100.0 * part), 100.0 * part)
+}
+
+/// The same rounded up, as a bound is; a percentage of few digits stays what it is.
+pub fn percent_up(part: f64) -> String {
     let percent = 100.0 * part;
-    let decimals = match percent {
+    let decimals = decimals(percent);
+    let unit = [1.0, 10.0, 100.0, 1000.0][decimals];
+    let up = (percent * unit * (1.0 - 1e-9)).ceil() / unit;
+    format!("{up:.decimals$} %")
+}
+
+fn decimals(percent: f64) -> usize {
+    match percent {
         _ if percent >= 9.95 => 0,
         _ if percent >= 0.995 => 1,
         _ if percent >= 0.0995 => 2,
         _ => 3,
-    };
-    format!("{percent:.decimals$} %")
+    }
 }
 
 /// A number's text as it is set in print: with a true minus sign, and its exponent of ten apart.

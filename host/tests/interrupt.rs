@@ -185,6 +185,31 @@ fn long_fits_end_between_passes() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn what_is_proved_is_kept() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = scans(root.path());
+    for arguments in [
+        &["certify", "00.csv", "--within", "0.001%"][..],
+        &["fit", "00.csv", "--certify", "0.001%"],
+    ] {
+        let mut child = endless(arguments, &folder);
+        listens(&mut child);
+        signal(&child, "-INT");
+        let (code, output, errors) = ended(child);
+        assert_eq!(code, Some(130), "{arguments:?}: {errors}");
+        assert!(
+            errors.ends_with("interrupted: what is proved so far is written\n"),
+            "{errors}"
+        );
+        assert!(
+            output.contains("  proved     ") && output.contains(" so far"),
+            "{output}"
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn a_result_that_nobody_reads_is_not_waited_for() {
     let root = tempfile::tempdir().unwrap();
     let folder = scans(root.path());

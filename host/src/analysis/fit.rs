@@ -7,6 +7,7 @@ use brdfit_core::geometry::Sample;
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
 use super::hints::{self, Hint};
+use super::proof::Proof;
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use crate::error::Error;
@@ -39,6 +40,8 @@ pub struct FittedScan {
     pub derived: Vec<Derived>,
     /// The cost that the search had found, if another fit then led lower.
     pub improved_from: Option<f64>,
+    /// What was proved of it, if that was asked for.
+    pub proof: Option<Proof>,
     /// What a person would say of it.
     pub hints: Vec<Hint>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
@@ -87,7 +90,16 @@ impl FittedScan {
             outcome,
             choice: None,
             improved_from: None,
+            proof: None,
             elapsed: Some(elapsed),
+        }
+    }
+
+    /// Leaves out all times, so that every run gives the same bits.
+    pub fn forget_times(&mut self) {
+        self.elapsed = None;
+        if let Some(proof) = &mut self.proof {
+            proof.elapsed = None;
         }
     }
 

@@ -8,11 +8,14 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use super::prove::{ProofArguments, ended, part, proving, so_far};
 use crate::analysis::choose::Wanted;
 use crate::analysis::fit::{FittedScan, fit};
+use crate::analysis::proof::{provable, prove};
+use crate::engine::certify::Certificate;
 use crate::engine::{FitOptions, Material, Method, Until};
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::{OutputArguments, TableFormat, deliver};
@@ -36,12 +39,17 @@ pub struct Arguments {
     /// Prints the distinct minima too (JSON always has them)
     #[arg(long)]
     minima: bool,
-    /// Adds the time of each search to JSON and CSV, which are then not the same in each run
+    /// Adds the times of searches and proofs to JSON, and of searches to CSV, which are then not the same in each run
     #[arg(long)]
     time: bool,
     /// Draws the scan with its distinct minima, as SVG, or as PNG if brdfit is built with it; for one scan
     #[arg(long, value_name = "FILE", value_parser = picture::name)]
     plot: Option<PathBuf>,
+    /// Proves that no parameters within the bounds have an MSE^2 lower by more than this part, such as 5%, or finds them; an interrupt keeps what is proved so far
+    #[arg(long, value_name = "PART", value_parser = part)]
+    certify: Option<f64>,
+    #[command(flatten)]
+    proof: ProofArguments,
     #[command(flatten)]
     read: ReadOptions,
 }
@@ -57,11 +65,14 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     if arguments.plot.is_some() && measurements.len() > 1 {
         return Err(Error::new("--plot draws one scan").help("give one scan, or call brdfit once for each"));
     }
+    if arguments.certify.is_some() {
+        provable(wanted.candidates())?;
+    }
     let pool = arguments.search.pool()?;
     let bar = progress(streams.progress, &wanted, measurements.len());
-    // Of one scan nothing is finished before all is.
-    let several = measurements.len() > 1;
-    let interrupt = several.then(interrupt::keeping);
+    // Of one scan nothing is finished before all is, but for its proof.
+    let keeps = measurements.len() > 1 || arguments.certify.is_some();
+    let interrupt = keeps.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
     let wanted = wanted.until(interrupt.map_or_else(Until::default, Until::set));
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
@@ -77,22 +88,25 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         .collect()
     });
     bar.finish_and_clear();
-    let mut reports: Vec<FittedScan> = results.into_iter().flatten().collect::<Result<_, _>>()?;
-    if arguments.output.format != TableFormat::Text && !arguments.time {
-        reports.iter_mut().for_each(|report| report.elapsed = None);
-    }
-    let missing = measurements.len() - reports.len();
-    let ended = match missing {
-        0 => Ended::default(),
-        _ => Ended {
-            code: interrupt::EXIT_CODE,
-            why: format!(
-                "interrupted: {} of {} scans are fitted and written\n",
-                reports.len(),
-                measurements.len()
-            ),
-        },
+    let each = measurements.iter().zip(results);
+    let fitted = each.filter_map(|(measurement, result)| Some((measurement, result?)));
+    let clock = proving(streams.progress && arguments.certify.is_some());
+    // One proof after the other, each on all threads: so a limit of time is one of each.
+    let finish = |(measurement, result): (&Measurement, Result<FittedScan, Error>)| {
+        let Some(eps) = arguments.certify else {
+            return result;
+        };
+        let label = measurement.label();
+        let told = |certificate: &Certificate| clock.set_message(format!("{label}: {}", so_far(certificate)));
+        let goal = arguments.proof.goal(eps, &interrupted, &told);
+        pool.install(|| prove(measurement, result?, &goal))
     };
+    let mut reports: Vec<FittedScan> = fitted.map(finish).collect::<Result<_, _>>()?;
+    clock.finish_and_clear();
+    if arguments.output.format != TableFormat::Text && !arguments.time {
+        reports.iter_mut().for_each(FittedScan::forget_times);
+    }
+    let ended = ended(&reports, measurements.len());
     if reports.is_empty() {
         return Ok(ended);
     }

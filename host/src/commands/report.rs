@@ -1,7 +1,5 @@
 //! `brdfit report`: one HTML page on each scan, with figures, for people and for print.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,9 +7,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
-use crate::engine::Material;
+use super::prove::{ProofArguments, part};
+use super::subject::{self, Subject};
+use crate::analysis::proof::provable;
 use crate::error::Error;
-use crate::input::{self, Measurement, ReadOptions, left_out};
+use crate::input::{ReadOptions, left_out};
 use crate::options::SearchArguments;
 use crate::output;
 use crate::page::provenance;
@@ -38,16 +38,13 @@ pub struct Arguments {
     /// Writes each figure into a folder too, as SVG, and as PNG if brdfit is built with it
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
+    /// Proves that no parameters within the bounds have an MSE^2 lower by more than this part, such as 5%, or finds them
+    #[arg(long, value_name = "PART", value_parser = part)]
+    certify: Option<f64>,
+    #[command(flatten)]
+    proof: ProofArguments,
     #[command(flatten)]
     read: ReadOptions,
-}
-
-/// A scan to report.
-#[derive(Clone)]
-struct Subject {
-    measurement: Measurement,
-    /// What its results say.
-    stored: Option<Material>,
 }
 
 /// Runs the subcommand; `given` are all arguments of the program, which the page shows.
@@ -57,32 +54,35 @@ struct Subject {
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     let wanted = arguments.search.wanted()?;
     arguments.read.refuse_together("report")?;
+    if arguments.certify.is_some() {
+        provable(wanted.candidates())?;
+    }
     // Results name further files, which are inputs too.
     let target = |inputs: &[PathBuf]| output::target(arguments.output.as_deref(), inputs);
     target(&arguments.scans)?;
-    let mut subjects = Vec::new();
-    for (name, bytes) in input::read_bytes(&arguments.scans, streams.input)? {
-        match results::parse(&bytes) {
-            None => subjects.extend(scans(&name, &bytes, &arguments.read)?),
-            Some(fitted) => subjects.extend(of_results(&name, fitted, arguments, streams)?),
-        }
-    }
-    let named = subjects.iter().map(|subject| PathBuf::from(&subject.measurement.file));
-    let inputs: Vec<PathBuf> = arguments.scans.iter().cloned().chain(named).collect();
+    let subjects = subject::read(&arguments.scans, &arguments.read, "report", streams)?;
+    let inputs = subject::inputs(&arguments.scans, &subjects);
     let target = target(&inputs)?;
     if let Some(folder) = &arguments.plot {
         make(folder)?;
     }
-    let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| {
-        let each = subjects.par_iter();
-        each.map(|Subject { measurement, stored }| {
-            let section = Section::new(measurement, &wanted)?;
-            if let Some(stored) = stored {
-                results::agree(&section.label, &section.searched, stored)?;
-            }
-            Ok(section)
-        })
-        .collect()
+    let goal = arguments
+        .certify
+        .map(|eps| arguments.proof.goal(eps, &|| false, &|_| {}));
+    let section = |Subject { measurement, stored }: &Subject| {
+        let section = Section::new(measurement, &wanted, goal.as_ref())?;
+        if let Some(Ok(stored)) = stored.as_ref().map(|stored| &stored.material) {
+            // Results of a fit with a proof may have what the proof found.
+            results::agree(&section.label, &section.searched, stored).or_else(|error| {
+                results::agree(&section.label, &section.fit.outcome.material(), stored).map_err(|_| error)
+            })?;
+        }
+        Ok(section)
+    };
+    let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| match goal {
+        // One proof after the other, each on all threads: so a limit of time is one of each.
+        Some(_) => subjects.iter().map(section).collect(),
+        None => subjects.par_iter().map(section).collect(),
     });
     let sections: Vec<Section> = sections.into_iter().collect::<Result<_, _>>()?;
     if let Some(folder) = &arguments.plot {
@@ -94,68 +94,6 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
         left_out::note(std::slice::from_ref(&subject.measurement), streams.errors);
     }
     Ok(())
-}
-
-/// The scans in the bytes of a file.
-fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>, Error> {
-    let subject = |measurement| Subject {
-        measurement,
-        stored: None,
-    };
-    Ok(input::parse(name, bytes, options)?.into_iter().map(subject).collect())
-}
-
-/// The scans that results name; those without a fit are left out, and standard error is told.
-fn of_results(
-    name: &str,
-    fitted: Vec<results::StoredFit>,
-    arguments: &Arguments,
-    streams: &mut Streams,
-) -> Result<Vec<Subject>, Error> {
-    let mut files: HashMap<PathBuf, Vec<Subject>> = HashMap::new();
-    let mut found = Vec::new();
-    for one in fitted {
-        let stored = match one.material {
-            Ok(material) => material,
-            Err(why) => {
-                // If standard error is closed, the page still says what it is of.
-                let _ = writeln!(streams.errors, "{name}: left out, as it has no fit: {why}");
-                continue;
-            }
-        };
-        let file = one.file.display().to_string();
-        // A file with many scans is read once.
-        let all = match files.entry(one.file) {
-            Entry::Occupied(read) => read.into_mut(),
-            Entry::Vacant(place) => {
-                // A file of results may name anything; reading a pipe would wait for ever.
-                if place.key().metadata().is_ok_and(|there| !there.is_file()) {
-                    return Err(Error::new("this is not a file")
-                        .in_file(file)
-                        .help(format!("{name} names it; give the results of scans in files")));
-                }
-                let bytes = input::read_bytes(std::slice::from_ref(place.key()), &mut std::io::empty());
-                let help = || format!("{name} names it; call report where the fit was made");
-                let bytes = bytes.map_err(|error| error.help(help()))?;
-                let mut all = Vec::new();
-                for (file, bytes) in bytes {
-                    all.extend(scans(&file, &bytes, &arguments.read)?);
-                }
-                place.insert(all)
-            }
-        };
-        let subject = all.iter().find(|subject| subject.measurement.name == one.scan);
-        let mut subject = subject.cloned().ok_or_else(|| {
-            let scan = one.scan.as_deref().unwrap_or("without a name");
-            Error::new(format!("there is no scan {scan}, which {name} names")).in_file(file)
-        })?;
-        subject.stored = Some(stored);
-        found.push(subject);
-    }
-    if found.is_empty() {
-        return Err(Error::new("these results have no fit").in_file(name));
-    }
-    Ok(found)
 }
 
 /// Makes a folder for figures, which must take files.

@@ -119,8 +119,9 @@ fn summary(section: &Section) -> Markup {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
             }
             @if section.missed() {
-                li.flag { "A start of the paper's method ended below what the search had found; this is the better fit. A larger --starts makes the search more thorough." }
+                li.flag { "A start of the paper's method" @if fit.proof.is_some() { ", or the proof," } " ended below what the search had found; this is the better fit. A larger --starts makes the search more thorough." }
             }
+            @if let Some(proof) = &fit.proof { li { "Proved: " (words::proved(proof)) "." } }
             @if let Some(left_out) = left_out::summary(&fit.left_out) {
                 li { "Left out: " (left_out) "." }
             }

@@ -9,6 +9,7 @@ use crate::engine::{Material, Model, Values};
 use crate::error::Error;
 use crate::number::shortest;
 use crate::plain::of_cell;
+use crate::terms::terms;
 
 /// One scan of the results of `brdfit fit` or `brdfit batch`.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct StoredFit {
     pub file: PathBuf,
     /// Which scan of the file it is.
     pub scan: Option<String>,
+    /// The terms of the model that it was fitted with, if that is told and has any.
+    pub terms: Option<u8>,
     /// Its model with its parameters, or why it has none.
     pub material: Result<Material, String>,
 }
@@ -37,6 +40,7 @@ struct Object {
     scan: Option<String>,
     /// That of the paper in results of version 0.1.
     model: Option<String>,
+    terms: Option<Vec<String>>,
     parameters: Option<HashMap<String, f64>>,
     error: Option<String>,
 }
@@ -52,6 +56,7 @@ fn json(text: &str) -> Option<Vec<StoredFit>> {
         Some(StoredFit {
             file: object.file,
             scan: object.scan,
+            terms: object.terms.and_then(|names| terms(&names.join(",")).ok()),
             material,
         })
     };
@@ -80,6 +85,7 @@ fn csv(text: &str) -> Option<Vec<StoredFit>> {
         all.push(StoredFit {
             file: of_cell(row.get(file)?).into(),
             scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
+            terms: cell("terms").and_then(|names| terms(&names.replace('+', ",")).ok()),
             material,
         });
     }

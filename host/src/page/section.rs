@@ -3,6 +3,7 @@
 use crate::analysis::choose::Wanted;
 use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
+use crate::analysis::proof::{Goal, prove};
 use crate::engine::robust;
 use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values};
 use crate::error::Error;
@@ -49,11 +50,11 @@ pub enum Table {
 }
 
 impl Section {
-    /// Fits a scan with what is wanted, and by the paper's method if that is another.
+    /// Fits a scan with what is wanted, and by the paper's method if that is another; then a `goal` is proved.
     ///
     /// # Errors
-    /// The scan cannot be fitted.
-    pub fn new(measurement: &Measurement, wanted: &Wanted) -> Result<Section, Error> {
+    /// The scan cannot be fitted, or the model has no proof.
+    pub fn new(measurement: &Measurement, wanted: &Wanted, goal: Option<&Goal>) -> Result<Section, Error> {
         let mut fit = fit(measurement, wanted)?;
         let searched = fit.outcome.material();
         let samples = robust::kept(&measurement.samples, &fit.outcome);
@@ -73,6 +74,9 @@ impl Section {
             }
             (survey, paper.starts())
         };
+        if let Some(goal) = goal {
+            fit = prove(measurement, fit, goal)?;
+        }
         Ok(Section {
             label: measurement.label(),
             figures: figures(
@@ -88,7 +92,7 @@ impl Section {
         })
     }
 
-    /// Did a start of the survey end lower than the search, by more than rounding?
+    /// Did a start of the survey, or the proof, end lower than the search, by more than rounding?
     pub fn missed(&self) -> bool {
         self.fit
             .improved_from

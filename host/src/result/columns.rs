@@ -275,6 +275,7 @@ fn known(models: &[&Model]) -> Vec<Column> {
 /// What is known by the scan.
 fn of_scan() -> Vec<Column> {
     use Json::{Found, Otherwise, Time};
+    let proved = "proved: no parameters within the bounds have an MSE^2 below 1 less this of that of the fit";
     let conserved = "reflectance of at most 1 at each angle of incidence";
     vec![
         text("theta_i_deg", "angles of incidence, degrees", Otherwise, |row| {
@@ -293,6 +294,10 @@ fn of_scan() -> Vec<Column> {
         }),
         flag("energy_conserved", conserved, Otherwise, |row| {
             Some(row.scan?.derived.iter().all(Derived::conserves_energy))
+        }),
+        number("certified_eps", "1", proved, Otherwise, |row| row.scan?.proof?.within()),
+        whole("certificate_boxes", "boxes of the proof", Otherwise, |row| {
+            Some(row.scan?.proof?.boxes)
         }),
         text("not_used", "columns of the file that are not used", Otherwise, |row| {
             Some(row.scan?.about.unused.join("+"))

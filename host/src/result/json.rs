@@ -12,6 +12,7 @@ use super::cell::Cell;
 use super::columns::{Json, Row, of_fits};
 use crate::analysis::fit::FittedScan;
 use crate::analysis::hints::Hint;
+use crate::analysis::proof::Proof;
 use crate::document;
 use crate::engine::{Minimum, Values};
 use crate::input::{LeftOut, ReadAs};
@@ -43,6 +44,8 @@ struct Document<'a> {
     #[serde(flatten)]
     end: Columns<'a>,
     minima: Vec<JsonMinimum>,
+    /// Null where nothing is proved.
+    certificate: Option<Certificate>,
     evaluations: Evaluations,
     /// What a person would say.
     #[serde(skip_serializing_if = "<[Hint]>::is_empty")]
@@ -80,6 +83,20 @@ struct JsonMinimum {
     first_start: u64,
 }
 
+/// No parameters within the bounds have an MSE^2 below `1 - eps` of that of the fit.
+#[derive(Serialize)]
+struct Certificate {
+    eps: f64,
+    /// What was to be proved.
+    asked: f64,
+    complete: bool,
+    boxes: u64,
+    /// The proof found a better minimum than the search.
+    better: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    elapsed_s: Option<f64>,
+}
+
 #[derive(Serialize)]
 struct Evaluations {
     cost: u32,
@@ -109,6 +126,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
         derived: scan.derived.iter().map(at_angle).collect(),
         end: Columns(scan, Json::End),
         minima: outcome.minima.iter().map(minimum).collect(),
+        certificate: scan.proof.as_ref().and_then(certificate),
         evaluations: Evaluations {
             cost: outcome.evaluations.cost,
             linearize: outcome.evaluations.linearize,
@@ -117,6 +135,17 @@ fn document(scan: &FittedScan) -> Document<'_> {
         provenance: provenance(&scan.about, Some(&scan.options)),
         time: Columns(scan, Json::Time),
     }
+}
+
+fn certificate(proof: &Proof) -> Option<Certificate> {
+    Some(Certificate {
+        eps: proof.within()?,
+        asked: proof.asked,
+        complete: proof.complete,
+        boxes: proof.boxes,
+        better: proof.better,
+        elapsed_s: proof.elapsed.map(|time| time.as_secs_f64()),
+    })
 }
 
 /// One object for one scan, an array for several.

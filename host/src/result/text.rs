@@ -10,6 +10,7 @@ use crate::engine::{Minimum, Outcome};
 use crate::input::{label, left_out};
 use crate::names;
 use crate::number::six;
+use crate::result::words;
 use crate::terms::term_names;
 
 /// A page for people.
@@ -65,6 +66,9 @@ fn page(fit: &FittedScan, minima: bool) -> String {
         six(outcome.rms_ln),
         outcome.rms_ln * 100.0
     ));
+    if let Some(proof) = &fit.proof {
+        line(format!("  proved     {}", words::proved(proof)));
+    }
     if let Some(chi2) = fit.chi2 {
         let degrees = outcome.uncertainty.degrees_of_freedom;
         line(format!("  chi^2      {} of {degrees} degrees of freedom", six(chi2)));

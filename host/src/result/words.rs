@@ -2,8 +2,9 @@
 
 use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
+use crate::analysis::proof::Proof;
 use crate::analysis::undetermined::Undetermined;
-use crate::number::{four, percent, two};
+use crate::number::{four, percent, percent_up, two};
 use crate::terms::term_names;
 
 use brdfit_core::brdf::ALL;
@@ -54,6 +55,29 @@ pub fn choice(choice: &Choice) -> String {
         });
     }
     parts.join("; ")
+}
+
+/// What is proved of the fit, and with how much work.
+pub fn proved(proof: &Proof) -> String {
+    let time = proof.elapsed.map(|time| format!(", {:.1} s", time.as_secs_f64()));
+    let work = format!("{} boxes{}", proof.boxes, time.unwrap_or_default());
+    let better = match proof.better {
+        true => "; the search had missed this better minimum",
+        false => "",
+    };
+    match proof.within() {
+        Some(eps) => {
+            let eps = percent_up(eps);
+            let so_far = match proof.complete {
+                true => String::new(),
+                false => format!(" so far, of {} asked for", percent(proof.asked)),
+            };
+            format!(
+                "within {eps}{so_far}: no parameters within the bounds have an MSE^2 that is lower by more than {eps} ({work}){better}"
+            )
+        }
+        None => format!("nothing so far ({work}){better}"),
+    }
 }
 
 /// What a candidate is called among the others: its model, its terms, or both.

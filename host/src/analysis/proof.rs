@@ -1,0 +1,146 @@
+//! The proof that no parameters fit a scan better, or the better ones.
+
+use std::time::Duration;
+
+use brdfit_core::geometry::Sample;
+
+use super::fit::FittedScan;
+use crate::engine::certify::{self, Certificate, Claim, certify};
+use crate::engine::clock::Stopwatch;
+use crate::engine::{self, FitError, FitOptions, Outcome, Until, Values, robust};
+use crate::error::Error;
+use crate::input::{self, Measurement};
+
+/// What was proved of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proof {
+    /// What was to be proved: no cost below `1 - asked` of that of the fit.
+    pub asked: f64,
+    /// What was: no cost below `1 - eps` of that of the fit; 1 says nothing.
+    pub eps: f64,
+    /// Whether that is what was asked for.
+    pub complete: bool,
+    /// Number of boxes that were bounded.
+    pub boxes: u64,
+    /// Did the proof find a better minimum than the search?
+    pub better: bool,
+    /// Time of the proof; none where every run is to give the same bits.
+    pub elapsed: Option<Duration>,
+}
+
+impl Proof {
+    /// The part that the least cost may be below that of the fit; none where next to nothing is proved.
+    pub fn within(&self) -> Option<f64> {
+        (self.complete || self.eps < NOTHING).then_some(self.eps)
+    }
+}
+
+/// What is to be proved, what may end it, and who is told how far it is.
+#[derive(Clone, Copy)]
+pub struct Goal<'a> {
+    /// No cost is to be below `1 - eps` of that of the fit; above 0, below 1.
+    pub eps: f64,
+    /// The most boxes; the result is the same in each run.
+    pub boxes: u64,
+    /// The longest time.
+    pub limit: Option<Duration>,
+    /// An interrupt.
+    pub interrupted: &'a (dyn Fn() -> bool + Sync),
+    /// Is told now and then.
+    pub progress: &'a (dyn Fn(&Certificate) + Sync),
+}
+
+/// Refuses what has no proof, before anything is fitted.
+///
+/// # Errors
+/// A model that is not Eq. 14.
+pub fn provable(candidates: &[FitOptions]) -> Result<(), Error> {
+    match candidates.iter().find(|options| !options.model.is_paper()) {
+        None => Ok(()),
+        Some(options) => Err(Error::new(FitError::NoProof(options.model.name).to_string())
+            .help(format!("only --model {} has one", engine::Model::paper().name))),
+    }
+}
+
+/// Proves that no parameters within the bounds fit samples better than `outcome`, the fit of them with `options`; better ones that are found take its place.
+///
+/// # Errors
+/// [`FitError::NoProof`] if the model is not Eq. 14.
+pub fn of_outcome(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: Outcome,
+    goal: &Goal,
+) -> Result<(Outcome, Proof), FitError> {
+    let samples = robust::kept(samples, &outcome);
+    let options = FitOptions {
+        robust: false,
+        until: Until::default(),
+        ..*options
+    };
+    let scene = certify::scene(&samples, &options)?;
+    let no_proof = FitError::NoProof(options.model.name);
+    let begun = Stopwatch::start();
+    let stop = || (goal.interrupted)() || goal.limit.is_some_and(|limit| begun.elapsed() >= limit);
+    let claim = Claim {
+        eps: goal.eps,
+        boxes: goal.boxes,
+        stop: &stop,
+        progress: goal.progress,
+        watch: None,
+    };
+    let cost = |outcome: &Outcome| outcome.material().eq_14().map(|params| scene.cost(&params));
+    let best = outcome.material().eq_14().ok_or(no_proof)?;
+    let found = certify(&samples, &options, &best, &claim)?;
+    let elapsed = begun.elapsed();
+    let mut outcome = outcome;
+    // What the fit of another precision has left is not worth another search.
+    if cost(&outcome).is_none_or(|cost| found.cost < cost * (1.0 - SAME)) {
+        let known = [Values::from(found.params.to_array()), outcome.params];
+        outcome = Outcome {
+            robust: outcome.robust,
+            ..engine::fit_from(&samples, &options, &known)?
+        };
+    }
+    let above = cost(&outcome).ok_or(no_proof)?;
+    let proof = Proof {
+        asked: goal.eps,
+        eps: of_fit(&found, above, scene.rounding(above)),
+        complete: found.complete,
+        boxes: found.boxes,
+        better: found.better > 0,
+        elapsed: Some(elapsed),
+    };
+    Ok((outcome, proof))
+}
+
+/// That no cost is below a hundredth of the fit's tells nothing.
+pub const NOTHING: f64 = 0.99;
+
+/// Costs that differ by less than this part are those of one minimum.
+const SAME: f64 = 1e-9;
+
+/// What is proved of a fit of this cost, which may be above the least that the proof knows, as in `f32`.
+fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
+    if found.cost >= cost - rounding {
+        return found.eps;
+    }
+    1.0 - (1.0 - found.eps) * found.cost / cost
+}
+
+/// Proves that no parameters within the bounds fit a scan better; better ones that are found take the place of the fit.
+///
+/// # Errors
+/// The model is not Eq. 14.
+pub fn prove(measurement: &Measurement, fitted: FittedScan, goal: &Goal) -> Result<FittedScan, Error> {
+    let (before, elapsed) = (fitted.outcome.cost, fitted.elapsed);
+    let found = of_outcome(&measurement.samples, &fitted.options, fitted.outcome, goal);
+    let (outcome, proof) = found.map_err(|error| input::explain(measurement, error))?;
+    Ok(FittedScan {
+        choice: fitted.choice,
+        improved_from: fitted.improved_from.or((outcome.cost < before).then_some(before)),
+        proof: Some(proof),
+        elapsed,
+        ..FittedScan::new(measurement, &fitted.options, outcome, elapsed.unwrap_or_default())
+    })
+}

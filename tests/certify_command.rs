@@ -1,0 +1,161 @@
+//! `brdfit certify` and `--certify`, called in this process.
+
+use brdfit_suite::program::{brdfit, fail, succeed, write};
+use brdfit_suite::scan::data;
+use serde_json::Value;
+
+fn noisy(set: u32) -> String {
+    data(&format!("testdata{set}_sym_seed1.csv")).display().to_string()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&succeed(&[arguments, &["--format", "json"]].concat())).expect("JSON")
+}
+
+/// A search that misses on purpose.
+const ONE_START: [&str; 4] = ["--method", "paper", "--starts", "1"];
+
+#[test]
+fn results_say_what_is_proved() {
+    let scan = noisy(3);
+    let certified = json(&["certify", &scan, "--within", "5%"]);
+    assert_eq!(certified, json(&["fit", &scan, "--certify", "0.05"]));
+    let certificate = &certified["certificate"];
+    assert_eq!(certificate["eps"], 0.05);
+    assert_eq!(certificate["complete"], true);
+    assert_eq!(certificate["better"], false);
+    assert!(certificate["boxes"].as_u64().unwrap() > 0);
+    assert!(certificate.get("elapsed_s").is_none());
+    let timed = json(&["certify", &scan, "--within", "5%", "--time"]);
+    assert!(timed["certificate"]["elapsed_s"].as_f64().unwrap() > 0.0);
+    // Without a proof, and where it comes to nothing, there is no certificate.
+    assert_eq!(json(&["fit", &scan])["certificate"], Value::Null);
+    let nothing = json(&["fit", &noisy(1), "--certify", "1%", "--proof-boxes", "1"]);
+    assert_eq!(nothing["certificate"], Value::Null);
+    let text = succeed(&["certify", &scan]);
+    assert!(text.contains("  proved     within 5.0 %: no parameters"), "{text}");
+    let csv = succeed(&["certify", &scan, "--format", "csv"]);
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let place = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|name| name == "certified_eps");
+    assert_eq!(&reader.records().next().unwrap().unwrap()[place.unwrap()], "0.05");
+}
+
+#[test]
+fn the_report_says_what_is_proved() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("page.html").display().to_string();
+    succeed(&["report", &noisy(3), "--certify", "5%", "-o", &page]);
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains("Proved: within 5.0 %: no parameters"));
+}
+
+/// What ends a proof early says how far it came, and is the same in each run on any number of threads.
+#[test]
+fn a_limit_of_boxes_leaves_what_is_proved_so_far() {
+    let scan = noisy(3);
+    let limited = |more: &[&str]| json(&[&["certify", &scan, "--within", "1%", "--proof-boxes", "100"], more].concat());
+    let one = limited(&["--threads", "1"]);
+    let eps = one["certificate"]["eps"].as_f64().unwrap();
+    assert_eq!(one["certificate"]["complete"], false);
+    assert!(eps > 0.01 && eps < 0.5, "{eps}");
+    assert_eq!(one, limited(&["--threads", "3"]));
+    let text = succeed(&["certify", &scan, "--within", "1%", "--proof-boxes", "100"]);
+    assert!(text.contains("% so far, of 1.0 % asked for"), "{text}");
+}
+
+#[test]
+fn a_better_minimum_takes_the_place_of_the_fit() {
+    let scan = noisy(3);
+    let missed = json(&[&["fit", &scan][..], &ONE_START].concat());
+    let found = json(&[&["certify", &scan][..], &ONE_START].concat());
+    let best = json(&["fit", &scan]);
+    let mse2 = |result: &Value| result["mse2"].as_f64().unwrap();
+    assert!(mse2(&missed) > 1.01 * mse2(&best));
+    assert!(mse2(&found) < 1.000_001 * mse2(&best));
+    assert_eq!(found["certificate"]["better"], true);
+    // The first of the minima is the fit.
+    assert_eq!(found["minima"][0]["mse2"], found["mse2"]);
+}
+
+#[test]
+fn single_precision_is_proved_of_what_it_reports() {
+    let single = json(&["certify", &noisy(3), "--precision", "f32"]);
+    let eps = single["certificate"]["eps"].as_f64().unwrap();
+    assert!((0.05..0.0501).contains(&eps), "{eps}");
+    assert_eq!(single["certificate"]["complete"], true);
+}
+
+#[test]
+fn results_are_proved_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = noisy(3);
+    let result = |name: &str, form: &str, more: &[&str]| {
+        let text = succeed(&[&["fit", &scan, "--format", form], more].concat());
+        write(&folder, name, text)
+    };
+    let best = json(&["certify", &scan]);
+    for (name, form) in [("best.json", "json"), ("best.csv", "csv")] {
+        assert_eq!(json(&["certify", &result(name, form, &[])]), best);
+    }
+    // What the results know is not lost: the search here misses it.
+    let known = result("known.json", "json", &[]);
+    let kept = json(&[&["certify", &known][..], &ONE_START].concat());
+    assert_eq!(kept["certificate"]["better"], false);
+    assert!(kept["mse2"].as_f64().unwrap() < 1.000_001 * best["mse2"].as_f64().unwrap());
+}
+
+#[test]
+fn what_has_no_proof_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = noisy(3);
+    for arguments in [
+        &["certify", &scan, "--model", "ggx"][..],
+        &["fit", &scan, "--model", "auto", "--certify", "5%"],
+        &["report", &scan, "--model", "beckmann,ggx", "--certify", "5%"],
+    ] {
+        assert!(
+            fail(arguments).contains("only --model beckmann has one"),
+            "{arguments:?}"
+        );
+    }
+    let results = |name: &str, more: &[&str]| {
+        let text = succeed(&[&["fit", &scan, "--format", "json"], more].concat());
+        write(&folder, name, text)
+    };
+    let other = results("model.json", &["--model", "ggx"]);
+    assert!(fail(&["certify", &other]).contains("the results are of the model ggx"));
+    let fewer = results("terms.json", &["--terms", "diffuse,surface"]);
+    assert!(fail(&["certify", &fewer]).contains("give --terms diffuse,surface"));
+    let wide = results("wide.json", &[]);
+    assert!(fail(&["certify", &wide, "--fix", "n=1.5"]).contains("n is "));
+    for part in ["0", "100%", "-1%", "nan", "five"] {
+        let ran = brdfit(&["certify", &scan, &format!("--within={part}")], b"");
+        assert!(
+            ran.code == 2 && ran.errors.contains("between 0 and 100 %"),
+            "{part}: {}",
+            ran.errors
+        );
+    }
+}
+
+/// The page of the guide shows what the program prints, but for the time.
+#[test]
+fn the_guide_shows_what_is_printed() {
+    let guide = include_str!("../host/src/guide/certificates.md");
+    let block = |fence: &str| {
+        guide
+            .split(fence)
+            .nth(1)
+            .and_then(|rest| rest.split("```").next())
+            .unwrap()
+            .trim_end()
+    };
+    let command: Vec<&str> = block("```sh\nbrdfit ").split(' ').collect();
+    let shown = block("```text\n").split(" boxes").next().unwrap();
+    let printed = succeed(&command);
+    assert!(printed.contains(&format!("{shown} boxes")), "{printed}");
+}

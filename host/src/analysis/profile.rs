@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
+pub mod findings;
 pub mod hold;
 
 use calibrate::{LEVELS, threshold};

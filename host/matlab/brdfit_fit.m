@@ -10,28 +10,30 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %   theta_s   scattering angles, -90 < theta_s < 90; in plane positive forward, towards the specular peak
 %   brdf      measured BRDF in sr^-1, above 0
 %
-%   x         [rho_d rho_s rho_v m n kappa], dimensionless (Eq. 14 of Bishop, Butler and Marciniak, 2021);
+%   x         [rho_d rho_s rho_v m n kappa], dimensionless (Eq. 14 of Bishop, Butler and Marciniak, 2021, or GGX);
 %             of absent terms rho and kappa are 0, m and n are 1
 %   resnorm   sum(residual(:).^2)
 %   residual  ln of the model less ln brdf, times brdf / sigma if there is a sigma; of the size of brdf
 %   exitflag  1: converged, 2: converged as far as rounding allows, 0: too many evaluations, as in lsqcurvefit
 %   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17),
-%             .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits)
+%             .model (its name), .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits)
 %
 %   options is a struct with any of these fields; empty ones count as not given:
 %   delta_phi    azimuth of scattering less that of incidence in degrees; 180, in plane
 %   sigma        standard deviations of brdf in sr^-1; none, so that all samples have the same relative weight
-%   terms        'all', or some of 'diffuse', 'surface', 'volume', 'absorbing' with commas between; 'all'
+%   model        'beckmann' for Eq. 14, 'ggx' for the same with the wider tails of GGX, or 'auto' for the one that fits
+%                better: both have six parameters, so it has the least BIC; 'beckmann'
+%   terms        'all', or some of 'diffuse', 'surface', 'volume', 'absorbing' with commas between; 'all', which GGX needs
 %   lb, ub       bounds of x, as in lsqcurvefit; Table 1 of the paper: [0 0 0 1e-5 1 0], [1 100 100 10 100 100];
 %                equal ones hold a parameter fixed
 %   seed         of the search, an integer from 0 to 2^53; 0
-%   candidates   largest number of candidates of the search; 384
+%   candidates   largest number of candidates of the search; 435
 %   MaxFunEvals  largest number of evaluations of one fit; 500
 %   TolFun, TolX relative tolerances in resnorm and in x; eps
 %
 %   The same input gives the same bits of x and resnorm on every machine, and those of the program brdfit.
 %
-%   Errors: brdfit:badInput, brdfit:sizeMismatch, brdfit:badOption, brdfit:badTerms, brdfit:badBounds,
+%   Errors: brdfit:badInput, brdfit:sizeMismatch, brdfit:badOption, brdfit:badModel, brdfit:badTerms, brdfit:badBounds,
 %   brdfit:notFinite, brdfit:beyondHorizon, brdfit:notPositive, brdfit:tooFewSamples, brdfit:noFit.
 %
 %   See also brdfit_brdf, lsqcurvefit.
@@ -45,8 +47,8 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     if ~isstruct(options) || numel(options) ~= 1
         error('brdfit:badOption', 'brdfit_fit: options must be one struct');
     end
-    settings = struct('delta_phi', 180, 'sigma', [], 'terms', 'all', 'lb', [0 0 0 1e-5 1 0], ...
-        'ub', [1 100 100 10 100 100], 'seed', 0, 'candidates', NaN, 'MaxFunEvals', NaN, 'TolFun', NaN, 'TolX', NaN);
+    settings = struct('delta_phi', 180, 'sigma', [], 'model', 'beckmann', 'terms', 'all', ...
+        'lb', [0 0 0 1e-5 1 0], 'ub', [1 100 100 10 100 100], 'seed', 0, 'candidates', NaN, 'MaxFunEvals', NaN, 'TolFun', NaN, 'TolX', NaN);
     names = fieldnames(options);
     for k = 1:numel(names)
         if isempty(options.(names{k}))
@@ -74,11 +76,23 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
         whole('candidates', settings.candidates, 1, 2^32 - 1), whole('MaxFunEvals', settings.MaxFunEvals, 1, 2^32 - 1), ...
         number('TolFun', settings.TolFun), number('TolX', settings.TolX)];
 
-    [x, resnorm, stop, passes, minima] = brdfit_mex('fit', [ti; ts; dphi; f; weight], numbers, ...
-        bound('lb', settings.lb), bound('ub', settings.ub));
+    models = {settings.model};
+    if strcmp(settings.model, 'auto')
+        models = {'beckmann', 'ggx'};
+    end
+    resnorm = Inf;
+    for k = 1:numel(models)
+        [fitted{1:5}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k})], ...
+            bound('lb', settings.lb), bound('ub', settings.ub));
+        if fitted{2} < resnorm
+            [x, resnorm, stop, passes, minima] = fitted{:};
+            model = models{k};
+        end
+    end
 
     if nargout > 2
-        residual = reshape((log(brdfit_mex('brdf', [ti; ts; dphi], x)) - log(f)) .* weight, size(brdf));
+        value = brdfit_mex('brdf', [ti; ts; dphi], x, brdfit_model(model));
+        residual = reshape((log(value) - log(f)) .* weight, size(brdf));
     end
     flags = [1 2 0];
     messages = {'converged in resnorm', 'converged as far as rounding allows', 'MaxFunEvals evaluations were made'};
@@ -86,7 +100,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     if nargout > 4
         output = struct('iterations', passes(1), 'funcCount', passes(2) + passes(3), ...
             'algorithm', 'global search with bounded Levenberg-Marquardt', 'message', messages{stop}, ...
-            'mse2', resnorm / numel(f)^2);
+            'mse2', resnorm / numel(f)^2, 'model', model);
         output.minima = struct('x', {}, 'resnorm', {}, 'mse2', {}, 'hits', {});
         for k = 1:size(minima, 2)
             output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k), ...

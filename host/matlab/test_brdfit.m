@@ -1,9 +1,10 @@
-function test_brdfit(expected)
+function test_brdfit(expected, expected_ggx)
 % TEST_BRDFIT  Tests of brdfit_fit and brdfit_brdf.
 %
 %   test_brdfit
 %   test_brdfit('fits.csv')   also compares bits with what the program printed:
 %                             brdfit fit tests/data/testdata1_sym_seed1.csv tests/data/testdata2_sym_seed1.csv ... --format csv
+%   test_brdfit('fits.csv', 'ggx.csv')   and what it printed with --model ggx
 
     data = fullfile(fileparts(mfilename('fullpath')), '..', '..', 'tests', 'data');
     names = {'testdata1_sym_seed1.csv', 'testdata2_sym_seed1.csv', 'testdata3_sym_seed1.csv'};
@@ -34,6 +35,16 @@ function test_brdfit(expected)
         assert(isequal(brdfit_fit(ti, ts, f, struct('sigma', f, 'delta_phi', 180, 'seed', [])), x));
         if nargin > 0
             same_bits(expected, k, x, output.mse2);
+        end
+        % GGX, and the better of both.
+        [y, resnorm_y, residual_y, ~, output_y] = brdfit_fit(ti, ts, f, struct('model', 'ggx'));
+        close_to(sum(residual_y.^2), resnorm_y, 1e-12);
+        close_to(exp(residual_y), brdfit_brdf(ti, ts, y, [], 'ggx') ./ f, 1e-14);
+        assert(~isequal(x, y) && strcmp(output_y.model, 'ggx') && strcmp(output.model, 'beckmann'));
+        [z, resnorm_z, ~, ~, output_z] = brdfit_fit(ti, ts, f, struct('model', 'auto'));
+        assert(resnorm_z == min(resnorm, resnorm_y) && isequal(z, x) == strcmp(output_z.model, 'beckmann'));
+        if nargin > 1
+            same_bits(expected_ggx, k, y, output_y.mse2);
         end
     end
 
@@ -69,6 +80,9 @@ function test_brdfit(expected)
     fails('brdfit:badOption', @() brdfit_fit(ti, ts, f, struct('TolX', -1)));
     fails('brdfit:badTerms', @() brdfit_fit(ti, ts, f, struct('terms', 'shiny')));
     fails('brdfit:badTerms', @() brdfit_fit(ti, ts, f, struct('terms', 'volume')));
+    fails('brdfit:badTerms', @() brdfit_fit(ti, ts, f, struct('model', 'ggx', 'terms', 'diffuse')));
+    fails('brdfit:badModel', @() brdfit_fit(ti, ts, f, struct('model', 'phong')), 'beckmann, ggx');
+    fails('brdfit:badModel', @() brdfit_brdf(45, 45, x, 180, 'phong'));
     fails('brdfit:badBounds', @() brdfit_fit(ti, ts, f, struct('lb', [0 0])));
     fails('brdfit:badBounds', @() brdfit_fit(ti, ts, f, struct('lb', [2 0 0 1e-5 1 0])));
     fails('brdfit:notFinite', @() brdfit_fit(ti, ts, [NaN; f(2:end)]), 'sample 1:');

@@ -2,11 +2,12 @@
  * The MEX behind brdfit_fit.m and brdfit_brdf.m, which check the form of what they give to it:
  *
  *   [x, resnorm, stop, passes, minima] = brdfit_mex ("fit", samples, settings, lb, ub)
- *   f = brdfit_mex ("brdf", directions, x)
+ *   f = brdfit_mex ("brdf", directions, x, model)
  *
  * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, weight. settings is [seed, terms,
- * candidates, max_passes, cost_tolerance, step_tolerance], where NaN stands for the usual value. passes is [of the
+ * candidates, max_passes, cost_tolerance, step_tolerance, model], where NaN stands for the usual value. passes is [of the
  * best fit, without derivatives, with derivatives], and minima 8 x k: parameters, cost, hits. directions is 3 x n.
+ * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
  */
 #include <stdint.h>
 #include <string.h>
@@ -73,7 +74,7 @@ static void put_params(double *x, const brdfit_params_f64 *params) {
 static mxArray *scalar(double value) { return mxCreateDoubleScalar(value); }
 
 static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
-    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 6);
+    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 7);
     const size_t count = mxGetN(input[1]), blocks = BRDFIT_BLOCKS(count);
     brdfit_scan_f64 scan;
     brdfit_options_f64 options;
@@ -100,6 +101,7 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
         options.cost_tolerance = settings[4];
     if (!mxIsNaN(settings[5]))
         options.step_tolerance = settings[5];
+    options.model = (uint32_t)settings[6];
     options.lower = params(matrix(input[3], 1, 6));
     options.upper = params(matrix(input[4], 1, 6));
     check(brdfit_search_f64(&scan, &options, minima, MINIMA, &found));
@@ -130,12 +132,13 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
 static void brdf(mxArray *output[], const mxArray *input[]) {
     const double *directions = matrix(input[1], 3, 0);
     const brdfit_params_f64 x = params(matrix(input[2], 1, 6));
+    const uint32_t model = (uint32_t)*matrix(input[3], 1, 1);
     const size_t count = mxGetN(input[1]);
     output[0] = mxCreateDoubleMatrix(1, count, mxREAL);
     for (size_t i = 0; i < count; i++) {
         const double *direction = directions + 3 * i;
         const brdfit_error error =
-            brdfit_brdf_f64(direction[0], direction[1], direction[2], &x, mxGetPr(output[0]) + i);
+            brdfit_model_brdf_f64(model, direction[0], direction[1], direction[2], &x, mxGetPr(output[0]) + i);
         if (error == BRDFIT_ERROR_PARAMS)
             check(error);
         check_sample(error, i);
@@ -148,7 +151,7 @@ void mexFunction(int outputs, mxArray *output[], int inputs, const mxArray *inpu
         mxGetString(input[0], name, sizeof name);
     if (!strcmp(name, "fit") && inputs == 5)
         fit(outputs, output, input);
-    else if (!strcmp(name, "brdf") && inputs == 3)
+    else if (!strcmp(name, "brdf") && inputs == 4)
         brdf(output, input);
     else
         mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex is for brdfit_fit and brdfit_brdf");

@@ -9,6 +9,9 @@
 //! | [`results`] | reports, JSON, the shell, exit codes |
 //! | [`batch`] | many scans, on one machine or several |
 //! | [`exports`] | the model in other programs |
+//! | [`lsqcurvefit`] | the same in the words of MATLAB's lsqcurvefit |
+//! | [`firmware`] | the fit in an instrument |
+//! | [`determinism`] | the same bits everywhere |
 //! | [`accuracy`] | what the fit reaches, and how fast |
 //! | [`how_it_works`] | from a sample to the optimum |
 
@@ -18,10 +21,16 @@ pub mod accuracy {}
 pub mod batch {}
 #[doc = include_str!("guide/certificates.md")]
 pub mod certificates {}
+#[doc = include_str!("guide/determinism.md")]
+pub mod determinism {}
 #[doc = include_str!("guide/exports.md")]
 pub mod exports {}
+#[doc = include_str!("guide/firmware.md")]
+pub mod firmware {}
 #[doc = include_str!("guide/how_it_works.md")]
 pub mod how_it_works {}
+#[doc = include_str!("guide/lsqcurvefit.md")]
+pub mod lsqcurvefit {}
 #[doc = include_str!("guide/models.md")]
 pub mod models {}
 #[doc = include_str!("guide/reading.md")]

@@ -79,6 +79,29 @@ pub struct Measurement {
 }
 
 impl Measurement {
+    /// Of samples that are from no file: `file` is what messages call them.
+    ///
+    /// `sigma_ln` is the standard deviation of ln f that a weight of 1 stands for, if the weights come from standard deviations.
+    pub fn of_samples(file: impl Into<String>, samples: Vec<Sample<f64>>, sigma_ln: Option<f64>) -> Measurement {
+        Measurement {
+            file: file.into(),
+            name: None,
+            lines: vec![0; samples.len()],
+            sigma_ln,
+            read_as: ReadAs {
+                format: format::SAMPLES,
+                angles: units::Angles::Rad,
+                quantity: units::Quantity::Brdf,
+                forward: units::Forward::Positive,
+                weighted: samples.iter().any(|sample| sample.weight != samples[0].weight),
+            },
+            samples,
+            left_out: Vec::new(),
+            masked: Vec::new(),
+            about: About::default(),
+        }
+    }
+
     /// The file and the name of the scan in it, for people.
     pub fn label(&self) -> String {
         label(&self.file, self.name.as_deref())
@@ -100,31 +123,12 @@ pub fn label(file: &str, scan: Option<&str>) -> String {
 /// The first file that is missing, not understood, or leaves a doubt about what was measured: with its line and column.
 pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> Result<Vec<Measurement>, Error> {
     once(paths)?;
-    let files = paths.iter();
-    let files = files.map(|path| Ok((path.display().to_string(), bytes_of(path, stdin)?)));
-    read_each(files, paths.len(), options)
-}
-
-/// The same of files whose bytes are at hand, which are only named here.
-///
-/// # Errors
-/// As [`read`].
-pub fn read_named(files: &[&(String, Vec<u8>)], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
-    let each = files.iter().map(|(name, bytes)| Ok((name.clone(), bytes)));
-    read_each(each, files.len(), options)
-}
-
-/// Reads one file after the other, and holds the bytes of one at a time.
-fn read_each<B: AsRef<[u8]>>(
-    given: impl Iterator<Item = Result<(String, B), Error>>,
-    count: usize,
-    options: &ReadOptions,
-) -> Result<Vec<Measurement>, Error> {
-    let each = join::options_of_each(options, count)?;
+    let each = join::options_of_each(options, paths.len())?;
     let mut files = Vec::new();
-    for (file, options) in given.zip(&each) {
-        let (file, bytes) = file?;
-        let scans = raw_scans(&file, bytes.as_ref(), options).map_err(|error| error.in_file(&file))?;
+    for (path, options) in paths.iter().zip(&each) {
+        let file = path.display().to_string();
+        let bytes = bytes_of(path, stdin)?;
+        let scans = raw_scans(&file, &bytes, options).map_err(|error| error.in_file(&file))?;
         files.push((file, scans));
     }
     if options.one_scan {
@@ -249,7 +253,7 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .at_line(measurement.lines[index])
             .help("take f64, or leave out the row"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
-        FitError::Terms(_) | FitError::Interrupted => plain,
         FitError::NoProof(_) => plain.help("only --model beckmann has one"),
+        _ => plain,
     }
 }

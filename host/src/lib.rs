@@ -1,5 +1,5 @@
-//! Finds the parameters of microfacet BRDF models from scatterometer scans.
-//!
+#![doc = include_str!("../README.md")]
+//! # Map
 //! The mathematics is in [`brdfit_core`], the searches are compiled in [`engine`]; this crate reads files, chooses what to run, and writes what was found.
 //!
 //! Each room may import from those above it, and no file imports in a circle:
@@ -16,6 +16,7 @@
 //! | [`plot`] | figures as SVG, from plain data |
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
+//! | [`until`](mod@until) | until when a thread's searches are wanted |
 //! | [`options`] | the options that several commands have |
 //! | `commands` | one file or folder a command |
 //! | `cli` | the command line, which strings the commands together |
@@ -55,3 +56,4 @@ pub mod streams;
 #[cfg(feature = "cli")]
 pub mod target;
 pub mod terms;
+pub mod until;

@@ -2,12 +2,8 @@
 
 pub mod cell;
 pub mod columns;
-pub mod compare;
-pub mod converge;
 mod csv;
-pub mod inspect;
 pub mod json;
-pub mod profile;
 pub mod text;
 pub mod words;
 

@@ -137,7 +137,7 @@ fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     let blocks = blocks_of::<f64, M, P, C>(samples)?;
     let scene = scene::<f64, M, P, C, VECTORS>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    Ok(search::descend_from::<P>(&scene, own, options, starts))
+    search::descend_from::<P>(&scene, own, options, starts)
 }
 
 fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -172,7 +172,7 @@ fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
         .collect();
     let scans: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    Ok(joint::run::<P>(&scans, own, shared, options, all))
+    joint::run::<P>(&scans, own, shared, options, all)
 }
 
 fn value<M: Both<P, C>, const P: usize, const C: usize>(values: &[f64], sample: &Sample<f64>) -> Option<f64> {

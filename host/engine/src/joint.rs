@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::compiled::Kernel;
 use crate::layout::Layout;
 use crate::search::single;
+use crate::until::Watched;
 use crate::{FitError, FitOptions, Values};
 
 /// Scans at most.
@@ -18,6 +19,7 @@ pub const SCANS: usize = 8;
 
 /// A fit of several scans.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Fitted {
     /// Which of the model's parameters are shared.
     pub shared: Vec<bool>,
@@ -63,7 +65,10 @@ pub(crate) fn run<const P: usize>(
     shared: &[bool],
     options: &FitOptions,
     all: &[&[Sample<f64>]],
-) -> Fitted {
+) -> Result<Fitted, (usize, FitError)> {
+    let until = options.until;
+    let watched: Vec<_> = scans.iter().map(|&scene| Watched { scene, until }).collect();
+    let scans: &[&Kernel<f64, P>] = &watched.iter().map(|scan| scan as _).collect::<Vec<_>>();
     let layout = Layout::new(own, options.model);
     let one = layout.bounds::<f64>(options);
     let lm = Options::default();
@@ -83,6 +88,9 @@ pub(crate) fn run<const P: usize>(
         options,
     };
     let best = found.search(&problem);
+    if until.is_over() {
+        return Err((all.len(), FitError::Interrupted));
+    }
     let samples = counted(all);
     let uncertainty = Uncertainty::new(&best.at, &best.x, &bounds, samples);
     let error = |s: usize, k: usize| {
@@ -102,7 +110,7 @@ pub(crate) fn run<const P: usize>(
             .map(|place| layout.coordinate(place).and_then(|k| error(s, k)))
             .collect()
     };
-    Fitted {
+    Ok(Fitted {
         shared: shared.to_vec(),
         scans: (0..scans.len())
             .map(|s| layout.values(&problem.of(&best.x, s)))
@@ -114,7 +122,7 @@ pub(crate) fn run<const P: usize>(
         parameters: (0..problem.coordinates())
             .filter(|&k| bounds.lower[k] < bounds.upper[k])
             .count(),
-    }
+    })
 }
 
 /// Samples that count.

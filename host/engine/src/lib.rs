@@ -1,5 +1,5 @@
-//! The searches of [`brdfit_core`] for scans on a computer: each model compiled for each set of vector instructions.
-//!
+#![doc = include_str!("../README.md")]
+//! # Map
 //! Apart from the program that reads files and reports, because it takes most of the time to compile, and seldom changes.
 //!
 //! [`FitOptions`] and samples go into [`fit`], an [`Outcome`] comes out; what it says does not depend on threads or instructions.

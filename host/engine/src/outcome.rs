@@ -56,6 +56,7 @@ pub struct Outcome {
 
 /// Why no fit was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FitError {
     /// The sample of this index is not valid.
     Sample(usize, SampleError),

@@ -41,7 +41,7 @@ pub fn fit_from(samples: &[Sample<f64>], options: &FitOptions, known: &[Values])
 /// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost.
 ///
 /// # Errors
-/// [`FitError::Terms`] and [`FitError::Sample`].
+/// [`FitError::Terms`], [`FitError::Sample`] and [`FitError::Interrupted`].
 pub fn descend(
     samples: &[Sample<f64>],
     options: &FitOptions,
@@ -65,15 +65,22 @@ pub(crate) fn descend_from<const P: usize>(
     own: &[Parameter; P],
     options: &FitOptions,
     starts: &[Values],
-) -> Option<(f64, Values)> {
+) -> Result<Option<(f64, Values)>, FitError> {
     let layout = Layout::new(own, options.model);
     let bounds = layout.bounds::<f64>(options);
+    let scene = &Watched {
+        scene,
+        until: options.until,
+    };
     let ends = starts
         .iter()
         .map(|start| lm::fit(scene, &bounds, layout.coordinates(start), &Options::default()));
     let finite = ends.filter(|fit| fit.at.cost.is_finite());
-    let best = finite.min_by(|a, b| a.at.cost.total_cmp(&b.at.cost))?;
-    Some((best.at.cost, layout.values(&best.x)))
+    let best = finite.min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+    if options.until.is_over() {
+        return Err(FitError::Interrupted);
+    }
+    Ok(best.map(|best| (best.at.cost, layout.values(&best.x))))
 }
 
 /// A scene for one thread: searches are compiled for this type alone.
@@ -103,9 +110,14 @@ pub(crate) fn run<R: Real, const P: usize>(
         Method::Default => search::search_from(single(scene), &bounds, options.seed, starts, &known, &lm),
         Method::Paper => {
             let own = (0..u64::from(starts)).into_par_iter();
+            // A million starts that end at once take seconds too.
+            let own = own.filter(|_| !options.until.is_over());
             let own = own.map(|i| search::paper_fit(scene, &bounds, options.seed, i, &lm));
             let more = known.par_iter().map(|&x| lm::fit(scene, &bounds, x, &lm));
             let fits: Vec<_> = own.chain(more).collect();
+            if options.until.is_over() {
+                return Err(FitError::Interrupted);
+            }
             search::paper(scene, &bounds, fits, &lm)
         }
     };

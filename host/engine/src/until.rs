@@ -16,6 +16,9 @@ use crate::compiled::Kernel;
 pub struct Until(Option<&'static AtomicBool>);
 
 impl Until {
+    /// For good.
+    pub const NEVER: Until = Until(None);
+
     /// Until this flag is set.
     pub fn set(flag: &'static AtomicBool) -> Self {
         Until(Some(flag))
@@ -95,7 +98,7 @@ mod tests {
     use brdfit_core::geometry::Sample;
 
     use super::*;
-    use crate::{FitError, FitOptions, Method, fit};
+    use crate::{FitError, FitOptions, Method, descend, fit, joint};
 
     #[test]
     fn a_search_that_is_not_wanted_ends() {
@@ -118,7 +121,21 @@ mod tests {
                 };
                 assert_eq!(fit(&samples, &until(&OVER)), Err(FitError::Interrupted));
                 assert_eq!(fit(&samples, &until(&GOES_ON)), fit(&samples, &options));
+                let descend = |options: &FitOptions| descend(&samples, options, &[options.lower]);
+                assert_eq!(descend(&until(&OVER)), Err(FitError::Interrupted));
+                assert_eq!(descend(&until(&GOES_ON)), descend(&options));
             }
         }
+        let shared = [false, false, false, true, false, false];
+        let joint = |flag| {
+            let until = Until::set(flag);
+            let options = FitOptions {
+                until,
+                ..FitOptions::default()
+            };
+            joint::fit(&[&samples, &samples], &shared, &options)
+        };
+        assert_eq!(joint(&OVER), Err((2, FitError::Interrupted)));
+        assert!(joint(&GOES_ON).is_ok());
     }
 }

@@ -1,27 +1,19 @@
 //! The columns of the program's tables, as values for Python.
 
+use brdfit::analysis::fit::FittedScan;
 use brdfit::engine::{FitOptions, Model, Outcome};
 use brdfit::result::cell::{Cell, Kind};
-use brdfit::result::columns::{Column, Row, of_outcomes};
+use brdfit::result::columns::{Column, Row, of_fits, of_outcomes};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-fn row<'a>(options: &'a FitOptions, outcome: &'a Outcome) -> Row<'a> {
-    Row {
-        scan: None,
-        options,
-        outcome,
-        minimum: None,
-    }
-}
-
 /// Of one fit: each column with its value.
-pub fn of_one<'py>(py: Python<'py>, options: &FitOptions, outcome: &Outcome) -> PyResult<Bound<'py, PyDict>> {
+pub fn of_one<'py>(py: Python<'py>, fitted: &FittedScan) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(py);
-    for column in of_outcomes(&[outcome.model]) {
+    for column in of_fits(&[fitted.outcome.model]) {
         let name = &column.name;
-        match column.cell(&row(options, outcome)) {
+        match column.cell(&Row::from(fitted)) {
             Cell::Empty => table.set_item(name, py.None()),
             Cell::Flag(flag) => table.set_item(name, flag),
             Cell::Whole(whole) => table.set_item(name, whole),
@@ -44,19 +36,24 @@ enum Values {
 
 impl Table {
     /// A table without rows.
-    pub fn new(model: &Model) -> Table {
+    pub fn new(models: &[&Model]) -> Table {
         let of_numbers = |column: Column| match column.kind() {
             Kind::Text => None,
             Kind::Flag => Some((column, Values::Flag(Vec::new()))),
             Kind::Whole => Some((column, Values::Whole(Vec::new()))),
             Kind::Number => Some((column, Values::Number(Vec::new()))),
         };
-        Table(of_outcomes(&[model]).into_iter().filter_map(of_numbers).collect())
+        Table(of_outcomes(models).into_iter().filter_map(of_numbers).collect())
     }
 
     /// The cells of a fit.
     pub fn cells(&self, options: &FitOptions, outcome: &Outcome) -> Vec<Cell> {
-        let row = row(options, outcome);
+        let row = Row {
+            scan: None,
+            options,
+            outcome,
+            minimum: None,
+        };
         self.0.iter().map(|(column, _)| column.cell(&row)).collect()
     }
 

@@ -1,6 +1,7 @@
 """What the tests share."""
 
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,9 @@ DATA = ROOT / "tests" / "data"
 
 
 def program(*arguments):
-    """Standard output of the program `brdfit`."""
-    command = ["cargo", "run", "--quiet", "--release", "--", *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+    """Standard output of the program `brdfit`, as the package brings it."""
+    command = [sys.executable, "-m", "brdfit", *map(str, arguments)]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
 
 
 def scan(name):

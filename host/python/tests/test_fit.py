@@ -171,7 +171,7 @@ def test_a_forked_process_fits_too(cube):
 
 
 ANGLES, VALUES = np.arange(10.0), np.ones(10)
-TERM_SETS = r"terms is one of: diffuse \| diffuse,surface \|"
+TERM_SETS = r"terms takes one of: diffuse \| diffuse,surface \|"
 
 
 @pytest.mark.parametrize(
@@ -188,27 +188,35 @@ TERM_SETS = r"terms is one of: diffuse \| diffuse,surface \|"
         (
             (30, ANGLES[:5], VALUES[:5]),
             {},
-            "^5 samples cannot determine 6 parameters; measure more, or leave out terms$",
+            "^scan: 5 samples cannot determine 6 parameters; measure more, or take fewer terms$",
         ),
         ((30, ANGLES, VALUES[:5]), {}, r"^the shapes do not broadcast: theta_i \(\), theta_s \(10,\), .*brdf \(5,\)$"),
         ((30, ANGLES, 1.0), {}, r"^brdf has the shape \(\), the others ask for \(10,\); give one BRDF a sample$"),
-        ((30, ANGLES, [VALUES]), {}, r"^brdf has the shape \(1, 10\); fit takes one scan, fit_many several$"),
+        ((30, ANGLES, [VALUES]), {}, r"^brdf has the shape \(1, 10\); this takes one scan, fit_many several$"),
         ((30, ANGLES, ["a"] * 10), {}, "^brdf is not an array of numbers: "),
         ((30, ANGLES, VALUES), {"terms": "shiny"}, f"^there is no term 'shiny'; {TERM_SETS}"),
         ((30, ANGLES, VALUES), {"terms": ["volume"]}, f"^there is no model of just the terms volume; {TERM_SETS}"),
         (
             (30, ANGLES, VALUES),
             {"bounds": {"m": (2, 1)}},
-            r'^the bounds of m are the wrong way round; write "m": \(1, 2\)$',
+            r"^the bounds of m are the wrong way round; write 'm': \(1, 2\)$",
         ),
-        ((30, ANGLES, VALUES), {"bounds": {"n": 0.5}}, "^n cannot be 0.5; bounds take numbers from 1 to 1000000$"),
+        ((30, ANGLES, VALUES), {"bounds": {"n": 0.5}}, "^n cannot be 0.5; take a number from 1 to 1000000$"),
         ((30, ANGLES, VALUES), {"bounds": {"n": np.nan}}, "^n cannot be NaN; "),
         ((30, ANGLES, VALUES), {"bounds": {"n": (1, 2, 3)}}, r"^bounds\['n'\] is \(1, 2, 3\); give \(least, largest\)"),
-        ((30, ANGLES, VALUES), {"bounds": {"q": 1}}, '^there is no parameter "q"; the parameters are rho_d, '),
+        ((30, ANGLES, VALUES), {"bounds": {"q": 1}}, "^there is no parameter 'q'; the parameters are rho_d, "),
         ((30, ANGLES, VALUES), {"bounds": {"m": 1}, "terms": "diffuse"}, "^m is not a parameter of the terms diffuse; "),
-        ((30, ANGLES, VALUES), {"method": "best"}, '^there is no method "best"; method is "default" or "paper"$'),
+        ((30, ANGLES, VALUES), {"method": "best"}, r"^invalid value 'best' for method \[possible values: default, paper\]$"),
         ((30, ANGLES, VALUES), {"seed": -1}, "^seed is -1; take a whole number from 0 "),
         ((30, ANGLES, VALUES), {"seed": 2**64}, "^seed is 18446744073709551616; "),
+        ((30, ANGLES, VALUES), {"threads": 10**9}, "^threads is 1000000000; take a whole number from 1 to 1024$"),
+        ((30, ANGLES, VALUES), {"model": "phong"}, "^there is no model 'phong'; the models are beckmann, "),
+        ((30, ANGLES, VALUES * 1j), {}, "^brdf is not an array of numbers: its type is complex128; "),
+        ((30, ANGLES, VALUES.astype(object)), {}, "^brdf is not an array of numbers: its type is object; "),
+        ((30, ANGLES, VALUES > 0), {}, "^brdf is not an array of numbers: its type is bool; "),
+        ((30, [], []), {}, "^brdf has no samples$"),
+        ((30, ANGLES, VALUES), {"mask": VALUES > 0}, "^all samples are left out$"),
+        ((30, ANGLES, VALUES), {"mask": VALUES}, "^mask has the type float64; give True where "),
     ],
 )
 def test_bad_input_is_one_clear_line(arguments, keywords, message):

@@ -104,6 +104,7 @@ fn allowed(options: &FitOptions) -> bool {
 
 /// One candidate, fitted.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// How it was fitted.
     pub options: FitOptions,
@@ -119,6 +120,7 @@ pub struct Candidate {
 ///
 /// AICc lets in a parameter that nothing needs in one case of six however many samples there are; BIC in one of forty with 170, and in fewer with more.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Choice {
     /// Every candidate that was fitted, in the order given; those with more parameters than samples are not.
     pub candidates: Vec<Candidate>,

@@ -24,6 +24,7 @@ pub struct Value {
 
 /// The surface lobe in the plane of incidence, without the other terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Peak {
     /// Where it is brightest, radians, positive forward; at most 89.9 degrees.
     pub theta_s: f64,
@@ -35,6 +36,7 @@ pub struct Peak {
 
 /// The derived quantities of one angle of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Derived {
     /// The angle, radians.
     pub theta_i: f64,

@@ -15,6 +15,7 @@ use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct FittedScan {
     /// The scan's file.
     pub file: String,

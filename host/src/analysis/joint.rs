@@ -9,6 +9,7 @@ use crate::engine::{FitError, FitOptions, Precision};
 
 /// One candidate, fitted to all scans.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Candidate {
     /// How it was fitted.
     pub options: FitOptions,

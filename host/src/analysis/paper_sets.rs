@@ -44,9 +44,9 @@ impl Source {
 macro_rules! draws {
     ($set:literal, $noise:literal) => {
         [
-            include_str!(concat!("../../../tests/data/testdata", $set, "_", $noise, "_seed1.csv")),
-            include_str!(concat!("../../../tests/data/testdata", $set, "_", $noise, "_seed2.csv")),
-            include_str!(concat!("../../../tests/data/testdata", $set, "_", $noise, "_seed3.csv")),
+            include_str!(concat!("../../data/testdata", $set, "_", $noise, "_seed1.csv")),
+            include_str!(concat!("../../data/testdata", $set, "_", $noise, "_seed2.csv")),
+            include_str!(concat!("../../data/testdata", $set, "_", $noise, "_seed3.csv")),
         ]
     };
 }

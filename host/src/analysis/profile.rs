@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
-pub mod findings;
 pub mod hold;
 
 use calibrate::{LEVELS, threshold};
@@ -38,6 +37,7 @@ pub struct Interval {
 
 /// The profile of one parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Profile {
     /// Place of the parameter among those of the model.
     pub index: usize,
@@ -65,6 +65,7 @@ impl Profile {
 
 /// Profiles of several parameters, all of the best fit that any of them meets.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Profiles {
     /// That fit.
     pub outcome: Outcome,

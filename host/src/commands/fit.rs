@@ -22,6 +22,7 @@ use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::plot::{self, picture};
 use crate::result;
 use crate::streams::{Ended, Streams};
+use crate::until::until;
 
 /// Fits the model to scans
 #[derive(Args, Debug)]
@@ -74,7 +75,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let keeps = measurements.len() > 1 || arguments.certify.is_some();
     let interrupt = keeps.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
-    let wanted = wanted.until(interrupt.map_or_else(Until::default, Until::set));
+    let wanted = wanted.until(interrupt.map_or_else(until, Until::set));
     let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
         let each = measurements.par_iter();
         each.map(|measurement| {

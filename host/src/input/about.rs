@@ -12,6 +12,7 @@ use crate::plain::some_of;
 
 /// What a reader understood, beside the numbers.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct About {
     /// What kind of file it is, as far as its numbers need checks.
     pub kind: Kind,

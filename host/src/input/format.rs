@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 
+#[cfg(feature = "cli")]
 use super::formats;
 use super::options::ReadOptions;
 use super::raw::RawScan;
@@ -41,6 +42,17 @@ pub enum Reader {
     },
 }
 
+/// That of samples which no file holds.
+pub const SAMPLES: Format = Format {
+    name: "samples",
+    title: "samples",
+    about: "samples that another program gives",
+    reader: Reader::Bytes {
+        is: |_| false,
+        read: |_, _| Err(Error::new("samples are read from no file")),
+    },
+};
+
 impl PartialEq for Format {
     fn eq(&self, other: &Format) -> bool {
         self.name == other.name
@@ -59,23 +71,10 @@ impl Serialize for Format {
     }
 }
 
-impl<'de> Deserialize<'de> for Format {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(from)?;
-        let known = all().iter().find(|format| format.name == name);
-        known.copied().ok_or_else(|| serde::de::Error::custom("no such format"))
-    }
-}
-
-/// All formats, in the order in which they are tried.
-pub fn all() -> &'static [Format] {
-    &formats::ALL
-}
-
 #[cfg(feature = "cli")]
 impl clap::ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Format] {
-        all()
+        &formats::ALL
     }
 
     fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {

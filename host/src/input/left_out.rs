@@ -11,6 +11,7 @@ use crate::number::shortest;
 /// Why a row was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Reason {
     /// It has no valid value or angle.
     NotValid,
@@ -30,6 +31,8 @@ pub enum Reason {
     MaxValue,
     /// Its weight is 0.
     NoWeight,
+    /// A mask covers it.
+    Masked,
     /// It is far from the robust fit.
     Outlier,
 }
@@ -47,6 +50,7 @@ impl Reason {
             Reason::MaxAngle => "beyond the largest angle",
             Reason::MaxValue => "saturated",
             Reason::NoWeight => "of weight 0",
+            Reason::Masked => "masked",
             Reason::Outlier => "far from the fit",
         }
     }

@@ -66,7 +66,7 @@ pub fn table(scans: &[Measurement]) -> String {
 }
 
 /// The shortest number of degrees that is read as this angle in radians, to the last bit, if there is any.
-fn degrees(radians: f64, read: fn(f64) -> f64) -> Option<f64> {
+pub fn degrees(radians: f64, read: fn(f64) -> f64) -> Option<f64> {
     let near = radians.to_degrees();
     let short = (0..=15).filter_map(|decimals| format!("{near:.decimals$}").parse().ok());
     let beside = [near, near.next_up(), near.next_down()];

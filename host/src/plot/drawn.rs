@@ -3,7 +3,7 @@
 use brdfit_core::geometry::Sample;
 
 use super::marks::Data;
-use crate::engine::{Outcome, robust};
+use crate::engine::Outcome;
 use crate::input::Measurement;
 
 /// The samples of a picture.
@@ -25,13 +25,18 @@ impl Drawn {
 
     /// Those that were fitted, and those that were left out before and in the fit.
     pub fn of_fit(measurement: &Measurement, outcome: &Outcome) -> Drawn {
+        let outliers = outcome.robust.as_ref().map_or(&[][..], |robust| &robust.outliers);
+        Drawn::without(measurement, outliers)
+    }
+
+    /// Those of a scan, of which the ones in these places are shown as left out.
+    pub fn without(measurement: &Measurement, outliers: &[usize]) -> Drawn {
         let mut drawn = Drawn::of_scan(measurement);
-        if let Some(robust) = &outcome.robust {
-            let outliers = robust.outliers.iter().map(|&place| measurement.samples[place]);
-            drawn.left_out.extend(outliers);
-            drawn.left_out_count += robust.outliers.len();
-            drawn.samples = robust::kept(&measurement.samples, outcome);
-        }
+        let samples = measurement.samples.iter().enumerate();
+        let (out, kept): (Vec<_>, Vec<_>) = samples.partition(|(place, _)| outliers.contains(place));
+        drawn.left_out.extend(out.iter().map(|&(_, sample)| *sample));
+        drawn.left_out_count += out.len();
+        drawn.samples = kept.iter().map(|&(_, sample)| *sample).collect();
         drawn
     }
 

@@ -183,7 +183,7 @@ fn asked() -> Vec<Column> {
 }
 
 /// The parameters of all models, each once.
-fn every(models: &[&Model]) -> Vec<&'static Parameter> {
+pub fn every(models: &[&Model]) -> Vec<&'static Parameter> {
     let mut all: Vec<&Parameter> = Vec::new();
     for parameter in models.iter().flat_map(|model| model.parameters) {
         if all.iter().all(|known| known.name != parameter.name) {

@@ -87,7 +87,7 @@ const SCENES: [Scene; 9] = [
 
 macro_rules! file {
     ($name:literal) => {
-        paper_sets::samples(include_str!(concat!("../../../../tests/data/testdata", $name, ".csv")))
+        paper_sets::samples(include_str!(concat!("../../../data/testdata", $name, ".csv")))
     };
 }
 

@@ -1,11 +1,13 @@
 //! Rows of arrays as samples of scans. Degrees become radians here, in the way of the program's files.
 
 use brdfit::input::azimuth;
+use brdfit::input::left_out::{Counts, Reason};
 use brdfit::input::weight::{self, Source};
 use brdfit::number::shortest;
 use brdfit_core::geometry::{Observation, Sample};
-use numpy::PyReadonlyArray2;
-use numpy::ndarray::ArrayView2;
+use numpy::ndarray::{ArrayView, ArrayView2, Dimension};
+use numpy::{Element, PyArrayMethods, PyReadonlyArray, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Arrays of the same shape (scans, samples).
@@ -17,18 +19,43 @@ pub struct Arrays<'py> {
     delta_phi: PyReadonlyArray2<'py, f64>,
     brdf: PyReadonlyArray2<'py, f64>,
     sigma: Option<PyReadonlyArray2<'py, f64>>,
+    mask: Option<PyReadonlyArray2<'py, bool>>,
+}
+
+/// The numbers of an array.
+///
+/// # Errors
+/// They are not at whole steps, where another library would read between them.
+pub fn whole<'a, T: Element, D: Dimension>(
+    name: &str,
+    array: &'a PyReadonlyArray<'_, T, D>,
+) -> PyResult<ArrayView<'a, T, D>> {
+    let size = size_of::<T>();
+    let aligned = (array.data() as usize).is_multiple_of(align_of::<T>());
+    if !aligned || array.strides().iter().any(|&step| step % size as isize != 0) {
+        return Err(PyValueError::new_err(format!(
+            "{name} is not at whole steps in memory; give a copy of it"
+        )));
+    }
+    Ok(array.as_array())
 }
 
 impl Arrays<'_> {
     /// What can be read without the interpreter.
-    pub fn scans(&self) -> Scans<'_> {
-        Scans {
-            theta_i: self.theta_i.as_array(),
-            theta_s: self.theta_s.as_array(),
-            delta_phi: self.delta_phi.as_array(),
-            brdf: self.brdf.as_array(),
-            sigma: self.sigma.as_ref().map(|sigma| sigma.as_array()),
-        }
+    ///
+    /// # Errors
+    /// As [`whole`].
+    pub fn scans(&self) -> PyResult<Scans<'_>> {
+        let sigma = self.sigma.as_ref().map(|sigma| whole("sigma", sigma));
+        let mask = self.mask.as_ref().map(|mask| whole("mask", mask));
+        Ok(Scans {
+            theta_i: whole("theta_i", &self.theta_i)?,
+            theta_s: whole("theta_s", &self.theta_s)?,
+            delta_phi: whole("delta_phi", &self.delta_phi)?,
+            brdf: whole("brdf", &self.brdf)?,
+            sigma: sigma.transpose()?,
+            mask: mask.transpose()?,
+        })
     }
 }
 
@@ -40,6 +67,17 @@ pub struct Scans<'a> {
     delta_phi: ArrayView2<'a, f64>,
     brdf: ArrayView2<'a, f64>,
     sigma: Option<ArrayView2<'a, f64>>,
+    mask: Option<ArrayView2<'a, bool>>,
+}
+
+/// What is seen of a scan.
+pub struct Seen {
+    /// The samples, weighted as the program weights those of a file.
+    pub samples: Vec<Sample<f64>>,
+    /// The standard deviation of ln f that a weight of 1 stands for.
+    pub sigma_ln: Option<f64>,
+    /// What is not seen.
+    pub left_out: Counts,
 }
 
 impl Scans<'_> {
@@ -48,17 +86,22 @@ impl Scans<'_> {
         self.brdf.nrows()
     }
 
-    /// The samples of a scan, weighted as the program weights those of a file.
+    /// The samples of a scan that no mask covers.
     ///
     /// # Errors
     /// With `drop_invalid` false, what is wrong with the first sample that is not valid.
-    pub fn samples(&self, scan: usize, drop_invalid: bool) -> Result<Vec<Sample<f64>>, String> {
+    pub fn seen(&self, scan: usize, drop_invalid: bool) -> Result<Seen, String> {
         let mut samples = Vec::with_capacity(self.brdf.ncols());
-        let mut weights = weight::Count::default();
+        let (mut weights, mut left_out) = (weight::Count::default(), Counts::default());
         for index in 0..self.brdf.ncols() {
             let at = [scan, index];
+            let theta_i = self.theta_i[at];
+            if self.mask.is_some_and(|mask| mask[at]) {
+                left_out.add(Reason::Masked, theta_i);
+                continue;
+            }
             let sample = Sample {
-                theta_i: self.theta_i[at].to_radians(),
+                theta_i: theta_i.to_radians(),
                 theta_s: self.theta_s[at].to_radians(),
                 delta_phi: azimuth(self.delta_phi[at]),
                 brdf: self.brdf[at],
@@ -67,14 +110,21 @@ impl Scans<'_> {
             if Observation::new(&sample).is_ok() && sample.weight > 0.0 {
                 weights.add(Source::Sigma);
                 samples.push(sample);
-            } else if !drop_invalid {
+            } else if drop_invalid {
+                left_out.add(Reason::NotValid, theta_i);
+            } else {
                 return Err(self.fault(scan, index));
             }
         }
-        if self.sigma.is_some() {
-            weights.normalise(&mut samples);
-        }
-        Ok(samples)
+        let sigma_ln = match self.sigma {
+            Some(_) => weights.normalise(&mut samples),
+            None => None,
+        };
+        Ok(Seen {
+            samples,
+            sigma_ln,
+            left_out,
+        })
     }
 
     /// One over the standard deviation of ln f; 0 or not finite where that is not a number above 0.

@@ -1,0 +1,9 @@
+% brdfit: parameters of BRDF models from scatterometer scans
+%
+%   brdfit_fit            - the parameters at the global optimum, their minima, and the residuals
+%   brdfit_brdf           - the BRDF of a model at any angles
+%   brdfit_build          - compiles the MEX from the static library of core/capi
+%
+%   test_brdfit           - tests
+%   compare_lsqcurvefit   - the paper's sets fitted by lsqcurvefit and by brdfit_fit
+%   eq14                  - the model as one would write it for lsqcurvefit

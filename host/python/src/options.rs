@@ -1,0 +1,119 @@
+//! Options, as the words that the program's command line takes.
+
+use brdfit::analysis::choose::Wanted;
+use brdfit::engine::models::MODELS;
+use brdfit::engine::{Method, Until};
+use brdfit::error::Error;
+use brdfit::input::ReadOptions;
+use brdfit::options::SearchArguments;
+use brdfit::parameters;
+use clap::Parser;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::ThreadPool;
+
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct Searching {
+    #[command(flatten)]
+    search: SearchArguments,
+}
+
+#[derive(Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct Reading {
+    #[command(flatten)]
+    read: ReadOptions,
+}
+
+/// How to search.
+pub struct Asked {
+    /// What is wanted.
+    pub wanted: Wanted,
+    search: SearchArguments,
+}
+
+impl Asked {
+    /// The same, given up when `until` says so.
+    pub fn until(&self, until: Until) -> Wanted {
+        self.wanted.until(until)
+    }
+
+    /// Runs `work` on the threads asked for: of a pool for this call, as one that lasts, such as rayon's own, would hang in a process that is forked later.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+        Ok(self.pool()?.install(work))
+    }
+
+    /// The same for one fit, which most often has no use for a pool.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn for_one<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+        match &self.wanted {
+            Wanted::One(options) if options.method == Method::Default => Ok(work()),
+            _ => self.on_threads(work),
+        }
+    }
+
+    fn pool(&self) -> Result<ThreadPool, String> {
+        self.search.pool().map_err(|error| line(&error))
+    }
+}
+
+/// How to search, in words such as `--seed=7`.
+///
+/// # Errors
+/// `ValueError`, one line.
+pub fn search(words: &[String]) -> PyResult<Asked> {
+    let Searching { search } = Searching::try_parse_from(words).map_err(|error| usage(&error))?;
+    let wanted = search.wanted().map_err(|error| refuse(&error))?;
+    Ok(Asked { wanted, search })
+}
+
+/// How to read, in words such as `--column=R`.
+///
+/// # Errors
+/// `ValueError`, one line.
+pub fn reading(words: &[String]) -> PyResult<ReadOptions> {
+    let Reading { read } = Reading::try_parse_from(words).map_err(|error| usage(&error))?;
+    Ok(read)
+}
+
+/// Names of all models with what each is, that of the paper first.
+#[pyfunction]
+pub fn models() -> Vec<(&'static str, &'static str)> {
+    MODELS.iter().map(|model| (model.name, model.what)).collect()
+}
+
+/// The parameters of a model: name, unit, what it is, value where it is absent.
+#[pyfunction]
+pub fn names(model: &str) -> PyResult<Vec<(&'static str, &'static str, &'static str, f64)>> {
+    let model = parameters::model(model).map_err(|error| refuse(&error))?;
+    let each = model.parameters.iter().enumerate();
+    Ok(each
+        .map(|(place, it)| (it.name, it.unit, it.what, model.absent(place)))
+        .collect())
+}
+
+/// One line for `ValueError`.
+pub fn line(error: &Error) -> String {
+    let text = error.to_string();
+    text.strip_prefix("error: ").unwrap_or(&text).to_string()
+}
+
+/// The same, raised.
+pub fn refuse(error: &Error) -> PyErr {
+    PyValueError::new_err(line(error))
+}
+
+/// What clap says, in one line.
+fn usage(error: &clap::Error) -> PyErr {
+    let text = error.to_string();
+    let told = text.split("\n\n").next().unwrap_or_default();
+    let told: Vec<&str> = told.lines().map(str::trim).collect();
+    let told = told.join(" ");
+    PyValueError::new_err(told.strip_prefix("error: ").unwrap_or(&told).to_string())
+}

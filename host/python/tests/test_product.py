@@ -1,0 +1,193 @@
+"""What the program does beyond a fit, from Python: with its numbers."""
+
+import json
+
+import numpy as np
+import pytest
+
+import brdfit
+
+from common import DATA, program, scan
+
+FILE = DATA / "testdata1_sym_seed1.csv"
+
+
+@pytest.fixture(scope="module")
+def read():
+    (one,) = brdfit.read(FILE)
+    return one
+
+
+@pytest.fixture(scope="module")
+def fitted(read):
+    return brdfit.fit(read)
+
+
+def same(details, printed):
+    """Both are the same object, apart from what the file is called."""
+    for it in (details, printed):
+        it.pop("file", None)
+        it.pop("scan", None)
+        it.pop("provenance", None)
+        for one in it.get("scans", []):
+            one.pop("scan", None), one.pop("provenance", None)
+    assert details == printed
+
+
+def test_a_file_has_the_bits_of_its_numbers(read, fitted):
+    theta_i, theta_s, measured = scan(FILE.name)
+    assert [read.theta_i.tolist(), read.theta_s.tolist()] == [theta_i.tolist(), theta_s.tolist()]
+    assert read.brdf.tolist() == measured.tolist() and len(read) == 171 and read.file == str(FILE)
+    assert (read.delta_phi == 180).all() and (read.weight == 1).all() and read.sigma_ln is None
+    assert repr(read) == f"brdfit.Scan: {FILE}, 171 samples at theta_i = 45 deg"
+    assert fitted.x.tobytes() == brdfit.fit(theta_i, theta_s, measured).x.tobytes()
+    assert fitted.details == json.loads(program("fit", FILE, "--format", "json"))
+
+
+def test_reading_takes_the_program_s_options(tmp_path):
+    rows = [f"{theta_s},{30},{value},{2 * value}" for theta_s, value in zip(range(-40, 60, 2), np.linspace(0.1, 0.2, 50))]
+    file = tmp_path / "scan.csv"
+    file.write_text("\n".join(["a,b,R,G", *rows]))
+    scans = brdfit.read(file, columns={"theta_s": 1, "theta_i": 2, "brdf": 4}, ignore="R", mask_retro=5, thin=2)
+    assert len(scans) == 1 and scans[0].brdf[0] == 0.2
+    assert {why for why, *_ in scans[0].left_out} == {"near retro"}
+    with pytest.raises(ValueError, match="scan.csv:"):
+        brdfit.read(file)
+    with pytest.raises(TypeError, match=r"^read\(\) has no option 'colour'; its options are input_format, "):
+        brdfit.read(file, colour="R")
+    with pytest.raises(ValueError, match="none.csv: "):
+        brdfit.read(tmp_path / "none.csv")
+
+
+def test_what_follows_from_a_fit(read, fitted):
+    assert np.sum(fitted.residuals**2) == pytest.approx(fitted.fun, rel=1e-12)
+    assert fitted.curve().tolist() == brdfit.brdf(read.theta_i, read.theta_s, fitted).tolist()
+    assert fitted.curve([0, 30]).tolist() == brdfit.brdf(45, [0, 30], fitted.parameters).tolist()
+    (at,) = fitted.derived
+    assert at["theta_i_deg"] == 45 and at["reflectance"]["value"] > 1 and not at["energy_conserved"]
+    assert len(fitted.undetermined) == 1 and fitted.undetermined[0].startswith("rho_s, rho_v, n and kappa only ")
+    assert fitted.hints == []
+
+
+def test_models_by_name(read, fitted):
+    assert list(brdfit.MODELS)[:2] == ["beckmann", "beckmann-smith"]
+    for name in ("ggx-second", "abg"):
+        result = brdfit.fit(read, model=name)
+        printed = json.loads(program("fit", FILE, "--model", name, "--format", "json"))
+        assert result.parameters == printed["parameters"] and result.model == name
+        values = brdfit.brdf(read.theta_i, read.theta_s, result.parameters, model=name)
+        assert values.tolist() == brdfit.brdf(read.theta_i, read.theta_s, result).tolist()
+        assert repr(result).startswith(f"brdfit.Fit of {name}: ")
+    chosen = brdfit.fit(read, model="beckmann,ggx", terms="auto")
+    assert chosen.model == "beckmann" and chosen.table["terms"] == ["diffuse", "surface", "volume"]
+    assert chosen.details["selection"]["criterion"] == "bic"
+
+
+def test_certificate():
+    file = DATA / "testdata3_sym_seed1.csv"
+    (one,) = brdfit.read(file)
+    result = brdfit.fit(one, certify=0.5)
+    printed = program("fit", file, "--certify", "0.5", "--format", "json")
+    assert result.certificate == json.loads(printed)["certificate"] and result.certificate["complete"]
+    assert brdfit.fit(one).certificate is None
+    assert not brdfit.fit(one, certify=0.001, proof_boxes=1).details["certificate"]
+    with pytest.raises(ValueError, match="^certify is 2; take a part above 0 and below 1"):
+        brdfit.fit(one, certify=2)
+    with pytest.raises(ValueError, match="^there is no proof of the optimum for the model ggx; "):
+        brdfit.fit(one, certify=0.5, model="ggx")
+
+
+def test_robust(read):
+    brdf = read.brdf
+    brdf[[20, 50]] *= 30
+    result = brdfit.fit(read.theta_i, read.theta_s, brdf, robust=True)
+    assert result.outliers == (20, 50) and result.samples == 169
+    assert len(result.residuals) == 171 and abs(result.residuals[20]) > 3
+
+
+def test_many_with_options_of_their_own(read):
+    each = [{"terms": "diffuse,surface"}, {"model": "ggx-second", "seed": 3}, {"bounds": {"n": 1.5}}]
+    many = brdfit.fit_many(45, read.theta_s, [read.brdf] * 3, each=each, starts=200)
+    assert many.names == (*brdfit.NAMES, "rho_2", "m_2")
+    assert many.model.tolist() == ["beckmann", "ggx-second", "beckmann"] and many.terms[0] == "diffuse,surface"
+    for k, options in enumerate(each):
+        one = brdfit.fit(read, starts=200, **options)
+        places = [many.names.index(name) for name in one.names]
+        assert many.x[k, places].tolist() == one.x.tolist()
+        assert many.cov[k][np.ix_(places, places)].tobytes() == one.cov.tobytes()
+        assert np.isnan(np.delete(many.x[k], places)).all()
+    with pytest.raises(ValueError, match="^each has options for 2 scans, and brdf has 3$"):
+        brdfit.fit_many(45, read.theta_s, [read.brdf] * 3, each=each[:2])
+    curves = brdfit.brdf(45, [0, 30], brdfit.fit_many(45, read.theta_s, [read.brdf] * 3))
+    assert curves.shape == (3, 2)
+
+
+def test_profile_and_bootstrap(read, fitted):
+    found = brdfit.profile(read, ["m", "n"], bootstrap=20)
+    same(found.details, json.loads(program(
+        "profile", FILE, "--parameter", "m,n", "--bootstrap", "20", "--format", "json"
+    )))
+    interval = found["m"].intervals[1]
+    assert interval.level == 0.95 and interval.low < fitted.parameters["m"] < interval.high
+    assert found["m"].rise.min() == 0 and found["m"].x.shape == (len(found["m"].value), 6)
+    assert found.bootstrap["m"][0] == pytest.approx(fitted.parameters["m"], rel=0.01)
+    assert brdfit.profile(fitted, "m").cost == found.cost
+    with pytest.raises(ValueError, match="'x' is not a free parameter of the terms diffuse,"):
+        brdfit.profile(read, "x")
+    with pytest.raises(TypeError, match="^this takes a Scan or a Fit, not list; brdfit.scan makes one of arrays$"):
+        brdfit.profile([1, 2])
+
+
+def test_compare(read):
+    found = brdfit.compare(read, ["ggx", "beckmann"])
+    printed = json.loads(program("compare", FILE, "--models", "ggx,beckmann", "--format", "json"))
+    assert found.model == printed["model"] == "beckmann" and found.models == printed["models"]
+    table = pytest.importorskip("pandas") and found.to_pandas()
+    assert list(table.index) == ["beckmann", "ggx"]
+
+
+def test_joint(read):
+    other = DATA / "testdata1_sym_seed2.csv"
+    found = brdfit.joint([read, *brdfit.read(other)], "m,n", terms="diffuse,surface")
+    printed = program("joint", FILE, other, "--share", "m,n", "--terms", "diffuse,surface", "--format", "json")
+    same(found.details, json.loads(printed))
+    assert found.shared == ("m", "n") and found.parameters[0]["m"] == found.parameters[1]["m"]
+    assert list(found.parameters[0]) == list(brdfit.NAMES)
+
+
+def test_weights_and_outliers_reach_the_studies(read):
+    sigma = read.brdf * (0.02 + 0.1 * np.abs(np.sin(read.theta_s)))
+    weighted = brdfit.fit(read.theta_i, read.theta_s, read.brdf, sigma=sigma)
+    assert weighted.scan.sigma_ln > 0 and weighted.table["chi2"] > 0
+    assert brdfit.profile(weighted, "m").cost == weighted.fun
+
+
+def test_page_exports_and_notebooks(read, fitted, tmp_path):
+    page = brdfit.report(fitted, tmp_path / "page.html")
+    assert page.startswith("<!DOCTYPE html>") and (tmp_path / "page.html").read_text() == page
+    assert fitted.export("c", tmp_path / "paint.h", name="paint") == (tmp_path / "paint.h").read_text()
+    result = tmp_path / "result.json"
+    result.write_text(fitted.json)
+    assert fitted.export("zemax") == program("export", result, "--to", "zemax")
+    with pytest.raises(ValueError, match="wavelength"):
+        fitted.export("openmaterial")
+    with pytest.raises(ValueError, match="^invalid value 'blender' for to "):
+        fitted.export("blender")
+    html = fitted._repr_html_()
+    assert "<td>rho_d</td><td>0.101916</td>" in html and "<svg" in html
+
+
+def test_plot(fitted):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    ax = fitted.plot()
+    curve, points, left_out = ax.lines
+    assert len(points.get_xdata()) == 171 and len(left_out.get_xdata()) == 0
+    at = np.searchsorted(curve.get_xdata(), fitted.scan.theta_s)
+    assert curve.get_ydata()[at].tolist() == fitted.curve().tolist()
+
+
+def test_progress(read, capsys):
+    pytest.importorskip("tqdm")
+    brdfit.fit_many(45, read.theta_s, [read.brdf] * 3, progress=True)
+    assert "3/3" in capsys.readouterr().err

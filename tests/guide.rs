@@ -1,0 +1,103 @@
+//! The README and the guide: their commands run, and their links lead somewhere.
+
+use std::fs;
+use std::path::Path;
+
+use brdfit_suite::program;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// Names and texts: the README, then the pages in the order of the guide's table, as one may use what those before it wrote.
+fn pages() -> Vec<(String, String)> {
+    let read = |name: &str| {
+        let text = fs::read_to_string(Path::new(ROOT).join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        (name.to_string(), text)
+    };
+    let guide = read("host/src/guide.rs").1;
+    let listed = guide
+        .lines()
+        .filter_map(|line| line.strip_prefix("//! | [`")?.split('`').next());
+    let mut pages = vec![read("README.md")];
+    pages.extend(listed.map(|page| read(&format!("host/src/guide/{page}.md"))));
+    let there = fs::read_dir(Path::new(ROOT).join("host/src/guide")).unwrap().count();
+    assert_eq!(pages.len(), 1 + there, "the table of host/src/guide.rs has every page");
+    pages
+}
+
+/// The lines of blocks of the shell; one that ends in a backslash goes on.
+fn commands(page: &str) -> Vec<String> {
+    let joined = page.replace("\\\n", " ");
+    let mut inside = false;
+    let mut lines = Vec::new();
+    for line in joined.lines() {
+        if line.starts_with("```") {
+            inside = line == "```sh";
+        } else if inside {
+            lines.push(line.to_string());
+        }
+    }
+    lines
+}
+
+/// Where measurements stand; a test does not write there.
+const RESULTS: &str = "benches/results/";
+/// The page whose commands make these measurements, which takes minutes.
+const MEASURED: &str = "host/src/guide/accuracy.md";
+
+/// Those of the program; of others there is one that compares files.
+#[test]
+fn every_command_runs() {
+    std::env::set_current_dir(ROOT).unwrap();
+    fs::create_dir_all("target").unwrap();
+    let mut ran = 0;
+    for (page, text) in pages().into_iter().filter(|(page, _)| page != MEASURED) {
+        for command in commands(&text) {
+            let words = shlex::split(&command).unwrap_or_else(|| panic!("{page}: {command}"));
+            let words: Vec<String> = words.iter().map(|word| word.replace(RESULTS, "target/")).collect();
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            match &words[..] {
+                ["cargo", "run", "--release", "--", arguments @ ..] | ["brdfit", arguments @ ..] => {
+                    let done = program::brdfit(arguments, b"");
+                    assert_eq!(done.code, 0, "{page}: {command}\n{}", done.errors);
+                    let written = arguments
+                        .windows(2)
+                        .filter(|pair| ["-o", "--out", "--output", "--plot"].contains(&pair[0]));
+                    let mut files = 0;
+                    for pair in written {
+                        let file = fs::read(pair[1]).unwrap_or_else(|error| panic!("{page}: {command}: {error}"));
+                        let kept = command.contains(&pair[1].replace("target/", RESULTS));
+                        let kept = kept.then(|| fs::read(pair[1].replace("target/", RESULTS)).unwrap());
+                        assert!(
+                            kept.is_none_or(|kept| kept == file),
+                            "{page}: {command} gives another file"
+                        );
+                        files += 1;
+                    }
+                    assert!(files > 0 || !done.output.is_empty(), "{page}: {command}");
+                    ran += 1;
+                }
+                ["cmp", one, other] => {
+                    assert!(fs::read(one).unwrap() == fs::read(other).unwrap(), "{page}: {command}");
+                }
+                _ => (),
+            }
+        }
+    }
+    println!("{ran} commands");
+    assert!(ran >= 20);
+}
+
+#[test]
+fn every_link_leads_to_a_file() {
+    for (page, text) in pages() {
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let path = match link.strip_prefix("https://github.com/brdfit/brdfit/blob/main/") {
+                Some(path) => path,
+                None if link.starts_with("https://") || link.starts_with("super::") => continue,
+                None => link,
+            };
+            let path = path.split('#').next().unwrap_or(path);
+            assert!(Path::new(ROOT).join(path).exists(), "{page}: {link}");
+        }
+    }
+}

@@ -4,15 +4,45 @@ use crate::boxqp;
 use crate::lm::{Bounds, Linearization};
 use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, Want, weights};
 use crate::pack::{ALONE, Pack};
-use crate::propose;
+use crate::propose::{self, Shapes};
 use crate::real::Real;
 use crate::residuals::{Residuals, accumulate, total};
-use crate::search::{Candidate, Region, Scene};
+use crate::search::{Candidate, Region, Scene, Waits};
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for Residuals<'_, R, M, P, C> {
-    /// Candidate `i`: parameters that are not weights spread over the ranges that the model gives, then the weights that fit best.
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        self.inlined_candidate(bounds, seed, i, region)
+    /// Parameters that are not weights spread over the ranges that the model gives; for variations of the index, the weights that keep the lobes as high.
+    fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        let mut x = bounds.lower;
+        let shapes = Shapes {
+            roles: const { propose::roles(&M::PARAMETERS) },
+            spread: R::table(
+                const { &propose::single(&propose::spreads(&M::PARAMETERS)) },
+                const { &propose::double(&propose::spreads(&M::PARAMETERS)) },
+            ),
+        };
+        let fades = propose::shapes(&mut x, &shapes, bounds, (seed, i), &self.seen, region);
+        let mut waits = if fades { Waits::Fading } else { Waits::Weights };
+        if let Region::Index(like) = region
+            && Self::HAS_INDEX
+        {
+            // Where the model misfits, least squares of f would take the lobes away.
+            M::keep_heights(&self.seen, like, &mut x);
+            if fades {
+                M::fade(&mut x, bounds);
+            }
+            x = bounds.clamp(x);
+            waits = Waits::No;
+        }
+        Candidate {
+            x,
+            rank: R::ZERO,
+            passes: 0,
+            waits,
+        }
+    }
+
+    fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        self.inlined_weigh(bounds, candidate);
     }
 
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
@@ -20,9 +50,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
     }
 
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
-        let slopes = M::PARAMETERS.iter().zip(x.iter().zip(y));
-        let mut slopes = slopes.filter(|(parameter, _)| matches!(parameter.role, Role::Slope));
-        slopes.any(|(_, (&x, &y))| x > y * factor || y > x * factor)
+        let roles = const { propose::roles(&M::PARAMETERS) };
+        (0..P).any(|k| roles[k] == Role::Slope && (x[k] > y[k] * factor || y[k] > x[k] * factor))
     }
 }
 
@@ -34,62 +63,25 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     /// Has the model an index of refraction? Then minima beside each other differ in it alone.
     const HAS_INDEX: bool = has_index(&M::PARAMETERS);
 
-    /// [`Scene::candidate`], compiled into its caller, for the vector instructions that the caller may use.
+    /// [`Scene::weigh`], compiled into its caller, for the vector instructions that the caller may use.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        self.propose::<ALONE>(bounds, seed, i, region)
+    pub fn inlined_weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        self.set_weights::<ALONE>(bounds, candidate);
     }
 
-    /// [`Scene::candidate`], one lane after the other: the same bits from less code.
-    pub fn scalar_candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        self.propose::<true>(bounds, seed, i, region)
-    }
-
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn propose<const SCALAR: bool>(
-        &self,
-        bounds: &Bounds<R, P>,
-        seed: u64,
-        i: u64,
-        region: Region<R, P>,
-    ) -> Candidate<R, P> {
-        let mut x = bounds.lower;
-        let fades = propose::shapes(&mut x, &M::PARAMETERS, bounds, (seed, i), &self.seen, region);
-        if let Region::Index(like) = region
-            && Self::HAS_INDEX
-        {
-            // Where the model misfits, least squares of f would take the lobes away.
-            M::keep_heights(&self.seen, like, &mut x);
-            if fades {
-                M::fade(&mut x, bounds);
-            }
-            return Candidate {
-                x: bounds.clamp(x),
-                rank: R::ZERO,
-                passes: 0,
-            };
-        }
-        let mut passes = 0;
-        loop {
-            let rank = self.set_weights::<SCALAR>(&mut x, bounds);
-            passes += 1;
-            if !(fades && passes == 1 && M::fade(&mut x, bounds)) {
-                let x = bounds.clamp(x);
-                return Candidate { x, rank, passes };
-            }
-            x = bounds.clamp(x);
-        }
+    /// [`Scene::weigh`], one lane after the other: the same bits from less code.
+    pub fn scalar_weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        self.set_weights::<true>(bounds, candidate);
     }
 
     /// [`Scene::level`], given what [`Residuals::inlined_totals`] are at `x`.
     ///
     /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
     pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
-        // So the compiler sees that no index is out of range.
-        let places = || Self::WEIGHTS.into_iter().flatten().filter(|&k| k < P);
+        let roles = const { propose::roles(&M::PARAMETERS) };
         let (mut least, mut most) = (R::ZERO, R::MAX);
-        for k in places() {
-            if x[k] > R::ZERO {
+        for k in 0..P {
+            if roles[k] == Role::Weight && x[k] > R::ZERO {
                 least = least.max(bounds.lower[k] / x[k]);
                 most = most.min(bounds.upper[k] / x[k]);
             }
@@ -101,28 +93,38 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             return (*x, squares);
         }
         let mut levelled = *x;
-        for k in places() {
-            levelled[k] *= scale;
+        for k in 0..P {
+            if roles[k] == Role::Weight {
+                levelled[k] *= scale;
+            }
         }
         (bounds.clamp(levelled), cost)
     }
 
-    /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and returns its sum, less what it is at the lower bounds; one pass.
+    /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and the rank to its sum, less what it is at the lower bounds; one pass.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn set_weights<const SCALAR: bool>(&self, x: &mut [R; P], bounds: &Bounds<R, P>) -> R {
+    fn set_weights<const SCALAR: bool>(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        if candidate.waits == Waits::No {
+            return;
+        }
+        let x = &mut candidate.x;
         let sums = if SCALAR {
             self.scalar_sums(x, Want::Columns)
         } else {
             self.weight_sums(x)
         };
-        let is_weight = M::PARAMETERS.map(|parameter| parameter.is_weight());
-        let (best, rank) = box_least_squares(&sums, is_weight, bounds);
+        let roles = const { propose::roles(&M::PARAMETERS) };
+        let (best, rank) = box_least_squares(&sums, &roles, bounds);
         for k in 0..P {
-            if is_weight[k] {
+            if roles[k] == Role::Weight {
                 x[k] = best[k];
             }
         }
-        rank
+        let again = candidate.waits == Waits::Fading && M::fade(x, bounds);
+        *x = bounds.clamp(*x);
+        candidate.rank = rank;
+        candidate.passes += 1;
+        candidate.waits = if again { Waits::Weights } else { Waits::No };
     }
 
     /// The normal equations of the weights: of f / f_measured of each weight at 1, times the block's weights, and of 1, times these.
@@ -193,7 +195,7 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
 /// The weights within bounds that solve `hessian weights = gradient` best, and their sum of squares, less what it is at the lower bounds; what is no weight is 0.
 fn box_least_squares<R: Real, const P: usize>(
     sums: &Linearization<R, P>,
-    is_weight: [bool; P],
+    roles: &[Role; P],
     bounds: &Bounds<R, P>,
 ) -> ([R; P], R) {
     let mut a = [[R::ZERO; P]; P];
@@ -202,7 +204,7 @@ fn box_least_squares<R: Real, const P: usize>(
     let mut room = [R::ZERO; P];
     for i in 0..P {
         a[i][i] = R::ONE;
-        if is_weight[i] {
+        if roles[i] == Role::Weight {
             lower[i] = bounds.lower[i];
             room[i] = bounds.upper[i] - bounds.lower[i];
             a[i] = sums.hessian[i];

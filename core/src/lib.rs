@@ -24,8 +24,9 @@
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
 //! | seeded starts | [`start::uniform`] | `start.rs` | Table 1 |
 //! | distinct minima | [`minima::Minima`] | `minima.rs` | Table 2, 3 |
-//! | search | [`search::search`], [`search::paper`] | `search.rs` | section 3 |
+//! | search | [`search::search`], [`search::Search`], [`search::paper`] | `search.rs` | section 3 |
 //! | starts worth a fit | [`search::Scene`] | `candidate.rs`, `propose.rs` | |
+//! | state to flash and back | [`saved::save`], [`saved::restore`] | `saved.rs` | |
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
 #![no_std]
 
@@ -53,6 +54,7 @@ pub mod pack;
 mod propose;
 pub mod real;
 pub mod residuals;
+pub mod saved;
 mod scalar;
 pub mod search;
 pub mod start;

@@ -2,6 +2,7 @@
 
 use crate::boxqp;
 use crate::real::Real;
+use crate::saved::{Saved, Tape};
 
 /// Sum of squared residuals with its first-order model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,10 +56,9 @@ pub trait Problem<R, const P: usize> {
     /// The same with J'r and J'J.
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P>;
     /// Where a step leads: `to` is `x + step`, and may be bent to where the linear model holds further, as long as it agrees with it to first order.
-    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
-        let _ = (x, step);
-        to
-    }
+    ///
+    /// A problem that knows nothing better gives `to`; one that wraps another passes this on, or fits take about twice the passes: so there is no default.
+    fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P];
 }
 
 impl<R, S: Problem<R, P> + ?Sized, const P: usize> Problem<R, P> for &S {
@@ -133,6 +133,15 @@ pub enum Stop {
     NotFinite,
 }
 
+/// How a fit can have ended, or not, in the order of [`crate::saved`].
+const ENDS: [Option<Stop>; 5] = [
+    None,
+    Some(Stop::Cost),
+    Some(Stop::Step),
+    Some(Stop::Passes),
+    Some(Stop::NotFinite),
+];
+
 impl Stop {
     /// True if more passes would not lower the cost.
     pub fn converged(self) -> bool {
@@ -159,6 +168,19 @@ pub struct Fit<R, const P: usize> {
 }
 
 impl<R: Real, const P: usize> Fit<R, P> {
+    /// The place of a fit that was never begun; all zeros.
+    pub(crate) const fn nowhere() -> Self {
+        Fit {
+            x: [R::ZERO; P],
+            at: Linearization::zero(),
+            passes: 0,
+            stop: Some(Stop::Cost),
+            damping: R::ZERO,
+            growth: R::ZERO,
+            scale: [R::ZERO; P],
+        }
+    }
+
     /// Begins at the point of `bounds` nearest to `start`; one pass.
     pub fn begin(
         problem: &(impl Problem<R, P> + ?Sized),
@@ -207,13 +229,19 @@ impl<R: Real, const P: usize> Fit<R, P> {
         }
     }
 
-    /// One trial step: one pass, or none if the fit ends before it.
-    pub fn step(&mut self, problem: &(impl Problem<R, P> + ?Sized), bounds: &Bounds<R, P>, options: &Options<R>) {
+    /// One trial step; how many passes it took: one, or none if the fit ends before it.
+    pub fn step(
+        &mut self,
+        problem: &(impl Problem<R, P> + ?Sized),
+        bounds: &Bounds<R, P>,
+        options: &Options<R>,
+    ) -> u32 {
         if self.stop.is_some() {
-            return;
+            return 0;
         }
         if self.passes >= options.max_passes {
-            return self.end(Stop::Passes);
+            self.end(Stop::Passes);
+            return 0;
         }
         let cost = self.at.cost;
         let mut lower = [R::ZERO; P];
@@ -247,7 +275,8 @@ impl<R: Real, const P: usize> Fit<R, P> {
             moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
         }
         if !moved {
-            return self.end(Stop::Step);
+            self.end(Stop::Step);
+            return 0;
         }
         let mut predicted = R::ZERO;
         for i in 0..P {
@@ -258,7 +287,8 @@ impl<R: Real, const P: usize> Fit<R, P> {
             predicted -= step[i] * (self.at.gradient[i] + self.at.gradient[i] + h_step);
         }
         if self.damping <= R::of(1e-2) && !(predicted > options.cost_tolerance * cost) {
-            return self.end(Stop::Cost);
+            self.end(Stop::Cost);
+            return 0;
         }
         let trial = problem.linearize(&x);
         self.passes += 1;
@@ -278,6 +308,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
             self.damping = (self.damping * self.growth).min(R::MAX);
             self.growth = (self.growth + self.growth).min(R::of(1e6));
         }
+        1
     }
 }
 
@@ -302,4 +333,21 @@ fn is_finite<R: Real, const P: usize>(at: &Linearization<R, P>) -> bool {
         }
     }
     finite
+}
+
+impl<R: Real, const P: usize> Saved for Fit<R, P> {
+    fn shape(&self) -> [u32; 3] {
+        [2, size_of::<R>() as u32, P as u32]
+    }
+    fn fields(&mut self, tape: &mut Tape<'_>) {
+        tape.reals(&mut self.x);
+        tape.reals(core::slice::from_mut(&mut self.at.cost));
+        tape.reals(&mut self.at.gradient);
+        tape.reals(self.at.hessian.as_flattened_mut());
+        tape.u32(&mut self.passes);
+        tape.one_of(&mut self.stop, &ENDS);
+        tape.reals(core::slice::from_mut(&mut self.damping));
+        tape.reals(core::slice::from_mut(&mut self.growth));
+        tape.reals(&mut self.scale);
+    }
 }

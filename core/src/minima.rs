@@ -1,11 +1,14 @@
 //! The table of distinct minima, best first (section 5 of the paper).
 
-use heapless::Vec;
+use heapless::{Vec, VecView};
 
 use crate::lm::Fit;
 use crate::real::Real;
+use crate::saved::Tape;
 
 /// One distinct minimum.
+///
+/// The other lists of a search have it too, in order of cost, so that an image holds one copy of what keeps them in order.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Minimum<R, const P: usize> {
@@ -28,13 +31,43 @@ pub struct Minima<R, const P: usize, const M: usize> {
     list: Vec<Minimum<R, P>, M>,
 }
 
+impl<R: Real, const P: usize> Minimum<R, P> {
+    pub(crate) const EMPTY: Self = Minimum {
+        x: [R::ZERO; P],
+        cost: R::ZERO,
+        hits: 0,
+        first_start: 0,
+    };
+
+    pub(crate) fn fields(&mut self, tape: &mut Tape<'_>) {
+        tape.reals(&mut self.x);
+        tape.reals(core::slice::from_mut(&mut self.cost));
+        tape.u32(&mut self.hits);
+        tape.u64(&mut self.first_start);
+    }
+}
+
 impl<R: Real, const P: usize, const M: usize> Default for Minima<R, P, M> {
     fn default() -> Self {
-        Minima { list: Vec::new() }
+        Self::new()
     }
 }
 
 impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
+    /// An empty table.
+    pub const fn new() -> Self {
+        Minima { list: Vec::new() }
+    }
+
+    pub(crate) fn fields(&mut self, tape: &mut Tape<'_>) {
+        tape.list(&mut self.list, &Minimum::EMPTY, |tape, minimum| minimum.fields(tape));
+    }
+
+    /// Forgets all.
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
+    }
+
     /// Best first.
     pub fn as_slice(&self) -> &[Minimum<R, P>] {
         &self.list
@@ -72,7 +105,7 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
                 (new.x, new.cost) = (old.x, old.cost);
             }
         }
-        insert(&mut self.list, M, new, |minimum| minimum.cost);
+        insert(&mut self.list, &new);
     }
 
     /// (high - low) / high over the costs of the table (Table 3); 0 if there are fewer than two.
@@ -91,7 +124,7 @@ pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<
 }
 
 /// Takes an item out of a list; the others stay in order.
-pub(crate) fn take<T, const N: usize>(list: &mut Vec<T, N>, place: usize) -> Option<T> {
+pub(crate) fn take<R: Real, const P: usize>(list: &mut VecView<Minimum<R, P>>, place: usize) -> Option<Minimum<R, P>> {
     let mut rest = list.get_mut(place..)?;
     while let [first, others @ ..] = rest
         && let Some(next) = others.first_mut()
@@ -106,25 +139,26 @@ fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
     close(a.cost, b.cost, R::of(0.01)) || a.x.iter().zip(&b.x).all(|(&x, &y)| close(x, y, R::of(1e-3)))
 }
 
-/// Puts `new` into its place in a list of at most `most` items in order of cost; where there are more, the last is left out.
-pub(crate) fn insert<R: Real, T, const N: usize>(list: &mut Vec<T, N>, most: usize, new: T, cost: impl Fn(&T) -> R) {
-    if list.len() >= most.min(N) {
+/// Puts `new` into its place in a list in order of cost; where there is no room, the last is left out.
+pub(crate) fn insert<R: Real, const P: usize>(list: &mut VecView<Minimum<R, P>>, new: &Minimum<R, P>) {
+    if list.is_full() {
         match list.last() {
-            Some(last) if less(cost(&new), cost(last)) => list.pop(),
+            Some(last) if less(new.cost, last.cost) => list.pop(),
             _ => return,
         };
     }
     // There is room.
-    let _ = list.push(new);
-    sift(list, cost);
+    let _ = list.push(*new);
+    sift(list);
 }
 
 /// Moves the last item of a list that is otherwise in order of cost to its place, after its equals.
-pub(crate) fn sift<R: Real, T>(list: &mut [T], cost: impl Fn(&T) -> R) {
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn sift<R: Real, const P: usize>(list: &mut [Minimum<R, P>]) {
     let mut rest = list;
     while let [others @ .., item] = rest
         && let Some(before) = others.last_mut()
-        && less(cost(item), cost(before))
+        && less(item.cost, before.cost)
     {
         core::mem::swap(before, item);
         rest = others;

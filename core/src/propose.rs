@@ -6,7 +6,7 @@ use crate::real::Real;
 use crate::search::{BANDS, Region};
 use crate::start;
 
-/// (n, kappa) of the first variations of a point, in groups: a minimum has neighbours in these regimes.
+/// (n, kappa) of the first variations of a point, in groups: a minimum has neighbours in these regimes. The squares of kappa are exact in `f32`.
 pub(crate) const INDICES: [(f64, f64); 14] = [
     // F hardly depends on the angle.
     (100.0, 0.0),
@@ -30,8 +30,8 @@ pub(crate) const INDICES: [(f64, f64); 14] = [
 pub(crate) const GROUPS: [u32; 3] = [5, 9, INDICES.len() as u32];
 /// Stands for an index that [`crate::model::Model::fade`] moves.
 const FADING: (f64, f64) = (1.0, 0.0);
-/// Where that begins: kappa^2, or n where kappa cannot be so large.
-const FADE_FROM: (f64, f64) = (0.1, 1.3);
+/// Where that begins: 1 / kappa^2, or n where kappa cannot be so large.
+const FADE_FROM: (u16, f64) = (10, 1.3);
 /// Shares of the regimes of the index: kappa = 0, n = 1, both in the corner where F vanishes; the rest has both.
 const REGIMES: [f64; 3] = [0.3, 0.25, 0.1];
 /// Share of the candidates that have slopes from pairs of samples.
@@ -39,10 +39,61 @@ const PAIRS: f64 = 0.25;
 /// Independent numbers of a candidate, beside its point in an even sequence.
 const NUMBERS: usize = 8;
 
+/// What proposals need to know of the parameters of a model.
+pub(crate) struct Shapes<R: Real, const P: usize> {
+    pub roles: [Role; P],
+    /// See [`Parameter::spread`].
+    pub spread: &'static [[R; 2]; P],
+}
+
+/// See [`Real::table`].
+pub(crate) const fn single<const N: usize>(pairs: &[(f64, f64); N]) -> [[f32; 2]; N] {
+    let mut table = [[0.0; 2]; N];
+    let mut k = 0;
+    while k < N {
+        table[k] = [pairs[k].0 as f32, pairs[k].1 as f32];
+        k += 1;
+    }
+    table
+}
+
+/// See [`Real::table`].
+pub(crate) const fn double<const N: usize>(pairs: &[(f64, f64); N]) -> [[f64; 2]; N] {
+    let mut table = [[0.0; 2]; N];
+    let mut k = 0;
+    while k < N {
+        table[k] = [pairs[k].0, pairs[k].1];
+        k += 1;
+    }
+    table
+}
+
+/// Where candidates of some parameters are spread.
+pub(crate) const fn spreads<const P: usize>(parameters: &[Parameter; P]) -> [(f64, f64); P] {
+    let mut spreads = [(0.0, 0.0); P];
+    let mut k = 0;
+    while k < P {
+        spreads[k] = parameters[k].spread;
+        k += 1;
+    }
+    spreads
+}
+
+/// The roles of some parameters.
+pub(crate) const fn roles<const P: usize>(parameters: &[Parameter; P]) -> [Role; P] {
+    let mut roles = [Role::Shape; P];
+    let mut k = 0;
+    while k < P {
+        roles[k] = parameters[k].role;
+        k += 1;
+    }
+    roles
+}
+
 /// Sets what is no weight to candidate `i` of the sequence of `seed`; true if it is meant for [`crate::model::Model::fade`].
 pub(crate) fn shapes<R: Real, const P: usize>(
     x: &mut [R; P],
-    parameters: &[Parameter; P],
+    shapes: &Shapes<R, P>,
     bounds: &Bounds<R, P>,
     (seed, i): (u64, u64),
     seen: &Seen<R>,
@@ -57,34 +108,33 @@ pub(crate) fn shapes<R: Real, const P: usize>(
     let mut slopes = 0;
     // By index, so that the compiler sees that none is out of range.
     for k in 0..P {
-        let parameter = &parameters[k];
-        if parameter.is_weight() {
+        let (role, among) = (shapes.roles[k], &shapes.spread[k]);
+        if role == Role::Weight {
             continue;
         }
         let range = (bounds.lower[k], bounds.upper[k]);
         let u = even.next().unwrap_or(own[k]);
-        match parameter.role {
+        match role {
             Role::Index => of_index[0] = u,
             Role::Absorption => of_index[1] = u,
             Role::Slope => {
-                let spread = between(parameter, range, seen.finest, in_band(u, region, slopes));
+                let spread = between(among, range, seen.finest, in_band(u, region, slopes));
                 x[k] = slope(spread, seen, &numbers, region, like(region).map(|like| like[k]));
                 slopes += 1;
             }
             _ => {
-                let spread = between(parameter, range, R::ZERO, u);
+                let spread = between(among, range, R::ZERO, u);
                 x[k] = like(region).map_or(spread, |like| like[k]);
             }
         }
     }
-    let has_index = parameters.iter().any(|parameter| matches!(parameter.role, Role::Index));
-    if !has_index {
+    if !shapes.roles.contains(&Role::Index) {
         if let Region::Index(like) = region {
-            vary(x, parameters, bounds, like, &own);
+            vary(x, shapes, bounds, like, &own);
         }
         return false;
     }
-    index(x, parameters, bounds, of_index, i, region)
+    index(x, shapes, bounds, of_index, i, region)
 }
 
 /// The point that a region is about.
@@ -98,7 +148,7 @@ fn like<'a, R, const P: usize>(region: Region<'a, R, P>) -> Option<&'a [R; P]> {
 /// The place within the whole range from that within the band; only the first slope is kept to it.
 fn in_band<R: Real, const P: usize>(u: R, region: Region<R, P>, slopes: usize) -> R {
     match region {
-        Region::Band(band) if slopes == 0 => (R::of(f64::from(band)) + u) / R::of(f64::from(BANDS)),
+        Region::Band(band) if slopes == 0 => (R::from(band as u16) + u) / R::from(BANDS as u16),
         _ => u,
     }
 }
@@ -126,15 +176,15 @@ fn slope<R: Real, const P: usize>(
 fn pair<R: Real>(seen: &Seen<R>, [lobe, first, second]: [R; 3]) -> Option<R> {
     let near = &seen.near[usize::from(lobe > R::of(0.7))];
     // The first is more often one of the nearest.
-    let pick = |u: R| near[((u.f64() * NEAR as f64) as usize).min(NEAR - 1)];
+    let pick = |u: R| near[usize::from((u * R::from(NEAR as u16)).whole()).min(NEAR - 1)];
     let (a, b) = (pick(first * first), pick(second));
     let m2 = (b.0 - a.0) / (a.1 - b.1);
     (m2 > R::ZERO && m2.is_finite()).then(|| m2.sqrt())
 }
 
 /// A value of a parameter at `u` of its range, from 0 to 1; evenly in the logarithm if it is above 0.
-fn between<R: Real>(parameter: &Parameter, (lower, upper): (R, R), finest: R, u: R) -> R {
-    let (least, most) = (R::of(parameter.spread.0).max(finest), R::of(parameter.spread.1));
+fn between<R: Real>(&[least, most]: &[R; 2], (lower, upper): (R, R), finest: R, u: R) -> R {
+    let least = least.max(finest);
     let from = lower.max(least).min(upper);
     let to = upper.min(most).max(lower);
     if from > R::ZERO {
@@ -147,7 +197,7 @@ fn between<R: Real>(parameter: &Parameter, (lower, upper): (R, R), finest: R, u:
 /// Sets n and kappa^2.
 fn index<R: Real, const P: usize>(
     x: &mut [R; P],
-    parameters: &[Parameter; P],
+    shapes: &Shapes<R, P>,
     bounds: &Bounds<R, P>,
     [u, regime]: [R; 2],
     i: u64,
@@ -155,15 +205,16 @@ fn index<R: Real, const P: usize>(
 ) -> bool {
     // Evenly in 1/n and in 1/(1 + kappa): F at large n and kappa is a function of the inverse, nearly linear.
     let (n_alone, kappa_alone) = (R::ONE / (R::ONE - R::of(0.99) * u), u / (R::ONE - R::of(0.99) * u));
-    let shares = REGIMES.map(R::of);
-    let steps = [shares[0], shares[0] + shares[1], shares[0] + shares[1] + shares[2]];
+    let two = R::of(REGIMES[0]) + R::of(REGIMES[1]);
+    let steps = [R::of(REGIMES[0]), two, two + R::of(REGIMES[2])];
     let (mut n, mut kappa2) = (None, None);
     let mut fades = false;
-    let listed = usize::try_from(i).ok().and_then(|i| INDICES.get(i));
+    let indices = R::table(const { &single(&INDICES) }, const { &double(&INDICES) });
+    let listed = usize::try_from(i).ok().and_then(|i| indices.get(i));
     match (region, listed) {
-        (Region::Index(_), Some(&(listed_n, listed_kappa))) => {
-            (n, kappa2) = (Some(R::of(listed_n)), Some(R::of(listed_kappa * listed_kappa)));
-            fades = (listed_n, listed_kappa) == FADING;
+        (Region::Index(_), Some(&[listed_n, listed_kappa])) => {
+            (n, kappa2) = (Some(listed_n), Some(listed_kappa * listed_kappa));
+            fades = (listed_n, listed_kappa) == (R::of(FADING.0), R::of(FADING.1));
         }
         (Region::Slopes(_), _) if i % 4 == 1 => fades = true,
         _ if regime < steps[0] => (n, kappa2) = (Some(n_alone), Some(R::ZERO)),
@@ -173,34 +224,33 @@ fn index<R: Real, const P: usize>(
     }
     let rest = (regime - steps[2]) / (R::ONE - steps[2]);
     for k in 0..P {
-        let parameter = &parameters[k];
         let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
-        let (chosen, u, fading) = match parameter.role {
+        let (chosen, u, fading) = match shapes.roles[k] {
             Role::Index => (n, u, R::ONE),
-            Role::Absorption => (kappa2, rest, R::of(FADE_FROM.0)),
+            Role::Absorption => (kappa2, rest, R::ONE / R::from(FADE_FROM.0)),
             _ => continue,
         };
         x[k] = match (region, chosen) {
             (Region::Slopes(like), _) if i.is_multiple_of(2) => like[k],
             _ if fades => fading.max(lower).min(upper),
             (_, Some(value)) => value.max(lower).min(upper),
-            _ => between(parameter, (lower, upper), R::ZERO, u.max(R::ZERO)),
+            _ => between(&shapes.spread[k], (lower, upper), R::ZERO, u.max(R::ZERO)),
         };
     }
     if fades {
-        fade_by_n(x, parameters, bounds);
+        fade_by_n(x, &shapes.roles, bounds);
     }
     fades
 }
 
 /// Where kappa cannot be what a fading index begins with, n is.
-fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P], bounds: &Bounds<R, P>) {
+fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], roles: &[Role; P], bounds: &Bounds<R, P>) {
     let mut absorbs = false;
     for k in 0..P {
-        absorbs |= parameters[k].role == Role::Absorption && x[k] >= R::of(FADE_FROM.0);
+        absorbs |= roles[k] == Role::Absorption && x[k] >= R::ONE / R::from(FADE_FROM.0);
     }
     for k in 0..P {
-        if parameters[k].role == Role::Index && !absorbs {
+        if roles[k] == Role::Index && !absorbs {
             x[k] = R::of(FADE_FROM.1).max(bounds.lower[k]).min(bounds.upper[k]);
         }
     }
@@ -209,13 +259,13 @@ fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], parameters: &[Parameter; P
 /// Without an index, a minimum has neighbours anywhere: everything stays within a factor of e.
 fn vary<R: Real, const P: usize>(
     x: &mut [R; P],
-    parameters: &[Parameter; P],
+    shapes: &Shapes<R, P>,
     bounds: &Bounds<R, P>,
     like: &[R; P],
     own: &[R; P],
 ) {
     for k in 0..P {
-        if !parameters[k].is_weight() {
+        if shapes.roles[k] != Role::Weight {
             let factor = (own[k] + own[k] - R::ONE).exp();
             x[k] = (like[k] * factor).max(bounds.lower[k]).min(bounds.upper[k]);
         }

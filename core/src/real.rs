@@ -27,6 +27,7 @@ pub trait Real:
     + AddAssign
     + SubAssign
     + MulAssign
+    + From<u16>
 {
     /// 0.
     const ZERO: Self;
@@ -55,8 +56,17 @@ pub trait Real:
     fn f64(self) -> f64;
     /// The bits, widened.
     fn bits(self) -> u64;
+    /// The number of these bits.
+    fn of_bits(bits: u64) -> Self;
     /// A number in `[0, 1)` from the upper bits of a random word.
     fn unit(word: u64) -> Self;
+    /// The whole part of a number from 0 to 65535.
+    fn whole(self) -> u16;
+    /// The one of two tables that is of this type: microcontrollers convert no constants from `f64` when they run.
+    fn table<const K: usize, const N: usize>(
+        single: &'static [[f32; K]; N],
+        double: &'static [[f64; K]; N],
+    ) -> &'static [[Self; K]; N];
     /// The range where the exponential is normal: -708 to 709 (`f64`) or -87 to 88 (`f32`).
     const EXPONENTS: (Self, Self);
 
@@ -133,8 +143,23 @@ impl Real for f64 {
         self.to_bits()
     }
     #[inline(always)]
+    fn of_bits(bits: u64) -> Self {
+        f64::from_bits(bits)
+    }
+    #[inline(always)]
     fn unit(word: u64) -> Self {
         (word >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+    #[inline(always)]
+    fn whole(self) -> u16 {
+        self as u16
+    }
+    #[inline(always)]
+    fn table<const K: usize, const N: usize>(
+        _single: &'static [[f32; K]; N],
+        double: &'static [[f64; K]; N],
+    ) -> &'static [[Self; K]; N] {
+        double
     }
 
     // e^x = 2^k e^r with |r| <= ln(2)/2; e^r = 1 + r + r^2 q(r), where q is a minimax polynomial, off by 4e-18.
@@ -261,8 +286,23 @@ impl Real for f32 {
         self.to_bits() as u64
     }
     #[inline(always)]
+    fn of_bits(bits: u64) -> Self {
+        f32::from_bits(bits as u32)
+    }
+    #[inline(always)]
     fn unit(word: u64) -> Self {
         (word >> 40) as u32 as f32 * (1.0 / (1u32 << 24) as f32)
+    }
+    #[inline(always)]
+    fn whole(self) -> u16 {
+        self as u16
+    }
+    #[inline(always)]
+    fn table<const K: usize, const N: usize>(
+        single: &'static [[f32; K]; N],
+        _double: &'static [[f64; K]; N],
+    ) -> &'static [[Self; K]; N] {
+        single
     }
 
     #[inline(always)]

@@ -31,8 +31,17 @@ pub fn uniform<R: Real, const P: usize>(seed: u64, i: u64, bounds: &Bounds<R, P>
 
 /// `P` independent numbers in [0, 1).
 pub fn unit<R: Real, const P: usize>(seed: u64, i: u64) -> [R; P] {
+    let mut numbers = [R::ZERO; P];
+    fill(seed, i, &mut numbers);
+    numbers
+}
+
+#[cfg_attr(target_os = "none", inline(never))]
+fn fill<R: Real>(seed: u64, i: u64, numbers: &mut [R]) {
     let mut random = generator(seed, i);
-    core::array::from_fn(|_| R::unit(random.next_u64()))
+    for number in numbers {
+        *number = R::unit(random.next_u64());
+    }
 }
 
 /// Three numbers in [0, 1) for candidate `i`: Kronecker's sequence of the generalised golden ratio, shifted by the seed.

@@ -139,6 +139,9 @@ with_number!(Add add, Sub sub, Mul mul, Div div);
 pub struct LeastSquares<F>(pub F);
 
 impl<const P: usize, F: Fn(&[Dual<P>; P]) -> Vec<Dual<P>>> Problem<f64, P> for LeastSquares<F> {
+    fn bend(&self, _x: &[f64; P], _step: &[f64; P], to: [f64; P]) -> [f64; P] {
+        to
+    }
     fn cost(&self, x: &[f64; P]) -> f64 {
         (self.0)(&Dual::variables(x)).iter().map(|r| r.v * r.v).sum()
     }

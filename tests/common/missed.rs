@@ -235,10 +235,13 @@ impl<R: Real> Problem<R, 6> for Watched<'_, R> {
 }
 
 impl<R: Real> Scene<R, 6> for Watched<'_, R> {
-    fn candidate(&self, bounds: &Bounds<R, 6>, seed: u64, i: u64, region: Region<R, 6>) -> Candidate<R, 6> {
-        let candidate = self.scan.candidate(bounds, seed, i, region);
-        self.count(0.5 * f64::from(candidate.passes));
-        candidate
+    fn propose(&self, bounds: &Bounds<R, 6>, seed: u64, i: u64, region: Region<R, 6>) -> Candidate<R, 6> {
+        self.scan.propose(bounds, seed, i, region)
+    }
+    fn weigh(&self, bounds: &Bounds<R, 6>, candidate: &mut Candidate<R, 6>) {
+        let before = candidate.passes;
+        self.scan.weigh(bounds, candidate);
+        self.count(0.5 * f64::from(candidate.passes - before));
     }
     fn level(&self, bounds: &Bounds<R, 6>, x: &[R; 6]) -> ([R; 6], R) {
         let (x, cost) = self.scan.level(bounds, x);

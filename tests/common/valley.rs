@@ -29,6 +29,9 @@ pub struct Passes {
 struct Straight<'a>(Scan<'a, f64, ALL, 6>);
 
 impl Problem<f64, 6> for Straight<'_> {
+    fn bend(&self, _x: &[f64; 6], _step: &[f64; 6], to: [f64; 6]) -> [f64; 6] {
+        to
+    }
     fn cost(&self, x: &[f64; 6]) -> f64 {
         self.0.cost(x)
     }

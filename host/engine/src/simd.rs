@@ -108,18 +108,17 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce f
     }
 }
 
-struct Propose<'a, R, M, const P: usize, const C: usize>(
+struct Weigh<'a, R, M, const P: usize, const C: usize>(
     &'a Residuals<'a, R, M, P, C>,
     &'a Bounds<R, P>,
-    u64,
-    u64,
-    Region<'a, R, P>,
+    Candidate<R, P>,
 );
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Propose<'_, R, M, P, C> {
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Weigh<'_, R, M, P, C> {
     type Output = Candidate<R, P>;
     #[inline(always)]
-    fn call(self) -> Candidate<R, P> {
-        self.0.inlined_candidate(self.1, self.2, self.3, self.4)
+    fn call(mut self) -> Candidate<R, P> {
+        self.0.inlined_weigh(self.1, &mut self.2);
+        self.2
     }
 }
 
@@ -178,10 +177,15 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
     for FastScan<'_, R, M, P, C, VECTORS>
 {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        self.run(Propose(&self.scan, bounds, seed, i, region), || {
-            self.scan.scalar_candidate(bounds, seed, i, region)
-        })
+    fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.scan.propose(bounds, seed, i, region)
+    }
+    fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        let mut weighed = *candidate;
+        *candidate = self.run(Weigh(&self.scan, bounds, *candidate), || {
+            self.scan.scalar_weigh(bounds, &mut weighed);
+            weighed
+        });
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
         let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x));

@@ -144,10 +144,13 @@ impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
 }
 
 impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
-        let candidate = self.scene.candidate(bounds, seed, i, region);
-        self.seen.borrow_mut().evaluations.cost += candidate.passes;
-        candidate
+    fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.scene.propose(bounds, seed, i, region)
+    }
+    fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+        let before = candidate.passes;
+        self.scene.weigh(bounds, candidate);
+        self.seen.borrow_mut().evaluations.cost += candidate.passes - before;
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
         let (x, cost) = self.scene.level(bounds, x);

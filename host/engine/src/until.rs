@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
-use brdfit_core::search::{Candidate, Region, Scene};
+use brdfit_core::search::{Candidate, Region, Scene, Waits};
 
 use crate::compiled::Kernel;
 
@@ -72,15 +72,15 @@ impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
 }
 
 impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
-    fn candidate(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+    fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
+        self.scene.propose(bounds, seed, i, region)
+    }
+    fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
         if self.until.is_over() {
-            return Candidate {
-                x: bounds.lower,
-                rank: R::MAX,
-                passes: 0,
-            };
+            candidate.waits = Waits::No;
+            return;
         }
-        self.scene.candidate(bounds, seed, i, region)
+        self.scene.weigh(bounds, candidate);
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
         if self.until.is_over() {

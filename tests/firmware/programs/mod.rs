@@ -7,6 +7,7 @@ pub mod fit;
 pub mod model;
 pub mod scan;
 pub mod search;
+pub mod steps;
 pub mod stream;
 pub mod tabled;
 
@@ -21,13 +22,14 @@ use brdfit_core::residuals::Scan;
 pub type Program = fn(&mut dyn Write) -> fmt::Result;
 
 /// All of them, by name.
-pub const PROGRAMS: [(&str, Program); 6] = [
+pub const PROGRAMS: [(&str, Program); 7] = [
     ("model", model::run),
     ("fit", fit::run),
     ("search", search::run),
     ("stream", stream::run),
     ("budget", budget::run),
     ("tabled", tabled::run),
+    ("steps", steps::run),
 ];
 
 /// Parameters of all terms.

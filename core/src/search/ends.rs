@@ -1,0 +1,155 @@
+//! What a search has found so far, and what that says of what is to be done.
+
+use heapless::Vec;
+
+use super::Scene;
+use crate::lm::Fit;
+use crate::minima::{self, Minima, Minimum};
+use crate::real::Real;
+use crate::saved::{Saved, Tape};
+
+/// A fit goes on that is within this factor of the best cost.
+pub(super) const NEAR: f64 = 1.05;
+/// A fit is given up that is beyond this factor of the best cost after so many passes.
+const HOPELESS: (f64, u32) = (10.0, 10);
+/// An end whose slopes differ from the best by more than this factor, and its cost by less than that one, leaves a scan unsettled.
+const RIVAL_END: (f64, f64) = (1.1, 2.0);
+/// The same for a fit of a few passes.
+const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
+/// A scan without noise: the best cost is below this part of that of a poor candidate. Then the cost does not tell what is near, and nothing settles it.
+const EXACT: f64 = 1e-9;
+/// Ends that are remembered.
+const ENDS: usize = 16;
+/// Two ends of the same cost, to this part, are one.
+const SAME: f64 = 1e-5;
+
+/// What a search has found.
+#[derive(Clone, Debug)]
+pub(super) struct Ends<R, const P: usize, const M: usize> {
+    /// The fit that ended best; of 0 passes if none has ended.
+    pub best: Fit<R, P>,
+    /// Where fits have ended, best first; unlike a distinct minimum, one for each cost. `hits` are the rounds in which a fit ended there, and `first_start` is the last of them.
+    pub list: Vec<Minimum<R, P>, ENDS>,
+    /// The largest cost of a candidate.
+    pub poorest: R,
+    /// The best short fit with other slopes than the best end.
+    pub rival: Option<([R; P], R)>,
+    pub minima: Minima<R, P, M>,
+}
+
+impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
+    pub const fn new() -> Self {
+        Ends {
+            best: Fit::nowhere(),
+            list: Vec::new(),
+            poorest: R::ZERO,
+            rival: None,
+            minima: Minima::new(),
+        }
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.best.passes = 0;
+        self.list.clear();
+        self.poorest = R::ZERO;
+        self.rival = None;
+        self.minima.clear();
+    }
+
+    pub fn fields(&mut self, tape: &mut Tape<'_>) {
+        self.best.fields(tape);
+        tape.list(&mut self.list, &Minimum::EMPTY, |tape, end| end.fields(tape));
+        tape.reals(core::slice::from_mut(&mut self.poorest));
+        let mut has_rival = self.rival.is_some();
+        tape.flag(&mut has_rival);
+        let (mut x, mut cost) = self.rival.unwrap_or(([R::ZERO; P], R::ZERO));
+        tape.reals(&mut x);
+        tape.reals(core::slice::from_mut(&mut cost));
+        self.rival = has_rival.then_some((x, cost));
+        self.minima.fields(tape);
+    }
+
+    /// Is a cost within this factor of the best?
+    pub fn is_near(&self, cost: R, factor: R) -> bool {
+        self.list.first().is_none_or(|best| cost < best.cost * factor)
+    }
+
+    /// Is there no noise in the scan?
+    pub fn is_exact(&self) -> bool {
+        let best = self.list.first();
+        best.is_some_and(|best| best.cost < self.poorest * R::of(EXACT))
+    }
+
+    /// In how many rounds a fit has ended in the best.
+    pub fn best_hits(&self) -> u32 {
+        self.list.first().map_or(0, |best| best.hits)
+    }
+
+    /// Remembers a short fit with other slopes than the best.
+    pub fn note_rival(&mut self, scene: &(impl Scene<R, P> + ?Sized), fit: &Fit<R, P>) {
+        let Some(best) = self.list.first() else { return };
+        let is_rival = |x: &[R; P]| scene.apart(x, &best.x, R::of(RIVAL_FIT.0));
+        let old = self.rival.filter(|(x, _)| is_rival(x));
+        if is_rival(&fit.x) && old.is_none_or(|(_, cost)| fit.at.cost < cost) {
+            self.rival = Some((fit.x, fit.at.cost));
+        }
+    }
+
+    /// Came a short fit with other slopes near the best?
+    pub fn has_rival_fit(&self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
+        let (Some(best), Some((x, cost))) = (self.list.first(), &self.rival) else {
+            return false;
+        };
+        self.is_near(*cost, R::of(RIVAL_FIT.1)) && scene.apart(x, &best.x, R::of(RIVAL_FIT.0))
+    }
+
+    /// Is an end with other slopes near the best?
+    pub fn has_rival_end(&self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
+        let [best, others @ ..] = self.list.as_slice() else {
+            return false;
+        };
+        let mut near = others.iter().filter(|end| self.is_near(end.cost, R::of(RIVAL_END.1)));
+        near.any(|end| scene.apart(&end.x, &best.x, R::of(RIVAL_END.0)))
+    }
+
+    /// Does a fit of candidate `start` need no further pass? It has converged, or it is plain that it joins an end already found, or leads nowhere; where it ends is noted.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub fn is_over(&mut self, fit: &Fit<R, P>, start: u64, round: u32) -> bool {
+        let converged = fit.stop.is_some();
+        let place = self.list.iter().position(|end| {
+            if converged {
+                minima::close(end.cost, fit.at.cost, R::of(SAME))
+            } else {
+                minima::joins((&end.x, end.cost), fit)
+            }
+        });
+        if place.is_some() || converged {
+            self.end(fit, place, round);
+            self.minima.add(fit, start);
+            return true;
+        }
+        fit.passes > HOPELESS.1 && !self.is_near(fit.at.cost, R::of(HOPELESS.0))
+    }
+
+    /// Takes note that a fit ends in the end at `place`, or in a new one.
+    fn end(&mut self, fit: &Fit<R, P>, place: Option<usize>, round: u32) {
+        let old = place.and_then(|place| minima::take(&mut self.list, place));
+        let mut end = old.unwrap_or(Minimum {
+            x: fit.x,
+            cost: fit.at.cost,
+            hits: 0,
+            first_start: 0,
+        });
+        if end.first_start < u64::from(round) {
+            (end.hits, end.first_start) = (end.hits + 1, u64::from(round));
+        }
+        if fit.at.cost < end.cost {
+            (end.x, end.cost) = (fit.x, fit.at.cost);
+        }
+        minima::insert(&mut self.list, &end);
+        if self.best.passes == 0 || minima::less(fit.at.cost, self.best.at.cost) {
+            self.best = *fit;
+        }
+    }
+}

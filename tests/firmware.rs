@@ -71,3 +71,12 @@ fn host_and_firmware_use_the_same_versions() {
         assert_eq!(of(&host), of(&firmware), "{name}: run tests/firmware/run --bless");
     }
 }
+
+/// What a model of one's own takes: a formula and its parameters.
+#[test]
+fn a_model_of_ones_own_is_short() {
+    let text = include_str!("firmware/programs/own.rs");
+    let model = text.split_once("#[derive").unwrap().1.split_once("const ROWS").unwrap().0;
+    let lines = model.lines().filter(|line| !line.trim().is_empty()).count();
+    assert!(lines <= 25, "{lines} lines");
+}

@@ -5,6 +5,7 @@
 pub mod budget;
 pub mod fit;
 pub mod model;
+pub mod own;
 pub mod scan;
 pub mod search;
 pub mod steps;
@@ -22,7 +23,7 @@ use brdfit_core::residuals::Scan;
 pub type Program = fn(&mut dyn Write) -> fmt::Result;
 
 /// All of them, by name.
-pub const PROGRAMS: [(&str, Program); 7] = [
+pub const PROGRAMS: [(&str, Program); 8] = [
     ("model", model::run),
     ("fit", fit::run),
     ("search", search::run),
@@ -30,6 +31,7 @@ pub const PROGRAMS: [(&str, Program); 7] = [
     ("budget", budget::run),
     ("tabled", tabled::run),
     ("steps", steps::run),
+    ("own", own::run),
 ];
 
 /// Parameters of all terms.

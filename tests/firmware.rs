@@ -76,7 +76,13 @@ fn host_and_firmware_use_the_same_versions() {
 #[test]
 fn a_model_of_ones_own_is_short() {
     let text = include_str!("firmware/programs/own.rs");
-    let model = text.split_once("#[derive").unwrap().1.split_once("const ROWS").unwrap().0;
+    let model = text
+        .split_once("#[derive")
+        .unwrap()
+        .1
+        .split_once("const ROWS")
+        .unwrap()
+        .0;
     let lines = model.lines().filter(|line| !line.trim().is_empty()).count();
     assert!(lines <= 25, "{lines} lines");
 }

@@ -97,7 +97,7 @@ fn intervals(samples: &[Sample<f64>], actual: &[f64; 6], calibrated: Option<u64>
     let options = FitOptions::default();
     let outcome = fit(samples, &options).expect("simulated scans are valid");
     let known = &outcome.uncertainty;
-    let limit = threshold(0.95, known.degrees_of_freedom);
+    let limit = threshold(0.95, known.degrees_of_freedom as f64);
     let best = six(&outcome.params);
     let quadratic = std::array::from_fn(|k| (best[k] - actual[k]).abs() <= Real::sqrt(limit) * known.stderr[k]);
     let held = std::array::from_fn(|k| {

@@ -96,7 +96,7 @@ fn criteria() {
         for more in &choice.candidates[2..4] {
             let left = samples.len() - more.criteria.parameters;
             let f = (plain.outcome.cost / more.outcome.cost - 1.0) * left as f64;
-            let limit = threshold(1.0 - more.p_value.unwrap(), left);
+            let limit = threshold(1.0 - more.p_value.unwrap(), left as f64);
             largest = largest.max((f - limit).abs());
             falls += u32::from(f > 1e-3);
         }

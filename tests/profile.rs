@@ -5,7 +5,8 @@
 )]
 
 use brdfit::analysis::bootstrap::{Noise, bootstrap, copy, quantile};
-use brdfit::analysis::profile::calibrate::thresholds;
+use brdfit::analysis::misfit;
+use brdfit::analysis::profile::calibrate::{LEVELS, thresholds};
 use brdfit::analysis::profile::{Profile, calibrate::threshold, hold::hold, profile};
 use brdfit::engine::{self, FitOptions, Material, Outcome, Values};
 use brdfit_core::geometry::Sample;
@@ -41,7 +42,7 @@ fn searched(samples: &[Sample<f64>], options: &FitOptions, index: usize, value: 
 fn quantiles_of_student() {
     // Any table of Student's t.
     for (degrees, quantile) in [(10, 2.228_138_85), (120, 1.979_930_41)] {
-        assert!(tolerance::STUDENT.admits((threshold(0.95, degrees).sqrt() - quantile).abs()));
+        assert!(tolerance::STUDENT.admits((threshold(0.95, degrees as f64).sqrt() - quantile).abs()));
     }
 }
 
@@ -58,7 +59,8 @@ fn intervals_end_where_the_cost_has_risen() {
                     assert!(!end.at_bound);
                     let cost = searched(&samples, &options, index, end.value);
                     let rise = (cost / profile.best.cost - 1.0) * degrees as f64;
-                    let part = rise / threshold(interval.level, degrees) - 1.0;
+                    let place = LEVELS.iter().position(|&level| level == interval.level).unwrap();
+                    let part = rise / profile.limits[place] - 1.0;
                     // The search may miss what the profile came by, but must not find less.
                     assert!(tolerance::INTERVAL_BELOW.admits(-part), "{part}");
                     ends = ends.max(part);
@@ -71,7 +73,8 @@ fn intervals_end_where_the_cost_has_risen() {
             // rho_d is as good as linear.
             if index == 0 {
                 let half = 0.5 * (profile.intervals[1].high.value - profile.intervals[1].low.value);
-                let expected = threshold(0.95, degrees).sqrt() * outcome.uncertainty.stderr[0];
+                let known = misfit::uncertainty(&samples, &outcome);
+                let expected = misfit::coverage_factor(&known) * known.stderr[0];
                 quadratic = quadratic.max((half / expected - 1.0).abs());
             }
         }
@@ -155,7 +158,7 @@ fn measured_thresholds_are_those_of_f_where_the_model_is_linear() {
         let (samples, options, outcome) = fitted(name);
         let scale = outcome.uncertainty.scale;
         let found = thresholds(&samples, &options, index, &outcome.params, scale, 100).unwrap();
-        found[1] / threshold(0.95, outcome.uncertainty.degrees_of_freedom)
+        found[1] / threshold(0.95, outcome.uncertainty.degrees_of_freedom as f64)
     };
     check((of("testdata1_sym_seed1.csv", 0) - 1.0).abs(), tolerance::CALIBRATED);
     // m cannot go where n and kappa would have to leave their bounds.

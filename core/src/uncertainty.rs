@@ -93,6 +93,8 @@ pub struct Uncertainty<R, const P: usize> {
     pub places: [Place; P],
     /// How far beyond its bound the linear model wants a parameter that is on one, the others inside following: in standard errors, positive towards larger values; 0 for the others.
     pub push: [R; P],
+    /// Row i, of a parameter on a bound: the displacement if it lies one standard error from there, the others inside following; 0 for the others.
+    pub along: [[R; P]; P],
     /// With the parameters on a bound held there.
     pub held: Axes<R, P>,
     /// As if those could move too: a parameter that is known only because another is on its bound is not known here.
@@ -113,14 +115,20 @@ impl<R: Real, const P: usize> Uncertainty<R, P> {
         };
         let unseen = places.map(|place| place == Place::Unseen);
         let mut push = [R::ZERO; P];
+        let mut along = [[R::ZERO; P]; P];
         for i in 0..P {
             if matches!(places[i], Place::Lower | Place::Upper) {
                 let mut free = inside;
                 free[i] = true;
                 // The minimum over the others that are inside, where their gradient is 0, is at -g / S with 1 / S their variance of i.
-                let error = axes(&at.hessian, free, [false; P], R::ONE).standard_error(i);
+                let freed = axes(&at.hessian, free, [false; P], R::ONE);
+                let error = freed.standard_error(i);
                 let ratio = -at.gradient[i] * error / scale;
                 push[i] = if ratio.is_finite() { ratio } else { R::ZERO };
+                for j in 0..P {
+                    let step = freed.covariance(i, j) / error * scale;
+                    along[i][j] = if step.is_finite() { step } else { R::ZERO };
+                }
             }
         }
         let lifted = places.map(|place| !matches!(place, Place::Fixed | Place::Unseen));
@@ -129,6 +137,7 @@ impl<R: Real, const P: usize> Uncertainty<R, P> {
             degrees_of_freedom,
             places,
             push,
+            along,
             held: axes(&at.hessian, inside, unseen, scale),
             lifted: axes(&at.hessian, lifted, unseen, scale),
         }

@@ -68,6 +68,8 @@ pub struct Measurement {
     pub lines: Vec<u64>,
     /// The standard deviation of ln f that a weight of 1 stands for, if the weights come from standard deviations; dimensionless.
     pub sigma_ln: Option<f64>,
+    /// The standard deviations that the file gives, one a sample; none if it does not give all.
+    pub deviations: Vec<weight::Deviation>,
     /// What the numbers of the file were taken for.
     pub read_as: ReadAs,
     /// What was left out, and why.
@@ -88,6 +90,7 @@ impl Measurement {
             name: None,
             lines: vec![0; samples.len()],
             sigma_ln,
+            deviations: Vec::new(),
             read_as: ReadAs {
                 format: format::SAMPLES,
                 angles: units::Angles::Rad,

@@ -222,8 +222,6 @@ pub const SPEOS_ZEMAX_FACTOR: Tolerance = Tolerance(0.2);
 
 // The program's results.
 
-/// Standard error of m from a scan without noise, as printed; measured 1.1e-18.
-pub const IDEAL_STDERR: Tolerance = Tolerance(5e-18);
 /// An angle in degrees after radians and back; measured 3.6e-15.
 pub const DEGREES: Tolerance = Tolerance(1e-14);
 /// Largest relative error of a parameter from a scan without noise; measured 2.1e-14.
@@ -287,3 +285,7 @@ pub const TAIL_DERIVATIVE: Tolerance = Tolerance(2.0);
 pub const TABLE_ROUND_TRIP: Tolerance = Tolerance(1e-6);
 /// Values of RGL tensor files, read back, relative and times cos theta_s: they have single precision.
 pub const RGL_ROUND_TRIP: Tolerance = Tolerance(1e-6);
+/// ln of the restricted likelihood by the filter against that of whole matrices; absolute; measured 4.4e-16.
+pub const RESTRICTED_LIKELIHOOD: Tolerance = Tolerance(4e-15);
+/// The sandwich by recursion against that of whole matrices; measured 1e-14.
+pub const SANDWICH: Tolerance = Tolerance(1e-13);

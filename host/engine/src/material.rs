@@ -5,6 +5,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::model::Role;
 use brdfit_core::real::Real;
 
+use crate::uncertainty::NEAR_ZERO;
 use crate::{Model, Values};
 
 /// A model with the values of its parameters.
@@ -40,6 +41,16 @@ impl Material {
     pub fn with(mut self, name: &str, value: f64) -> Self {
         if let Some(place) = self.model.place(name) {
             self.values[place] = value;
+        }
+        self
+    }
+
+    /// The same, with kappa a little above 0 where it is 0, for gradients: see [`crate::uncertainty::NEAR_ZERO`].
+    pub fn off_zero(mut self) -> Self {
+        for (value, parameter) in self.values.iter_mut().zip(self.model.parameters) {
+            if parameter.is_squared() && *value == 0.0 {
+                *value = NEAR_ZERO;
+            }
         }
         self
     }

@@ -8,20 +8,40 @@ use crate::compiled::Kernel;
 use crate::layout::Layout;
 use crate::{FitOptions, Values};
 
+/// Where kappa is 0 there is no derivative by it: gradients are taken here, and displacements are told for there, so that their products are right.
+pub const NEAR_ZERO: f64 = 1e-4;
+
+/// How the residuals of a scan are correlated along the angle, and what follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// The angle over which the correlation falls to 1/e, radians.
+    pub length: f64,
+    /// The part of their variance that is correlated, 0 to 1; the rest is noise of each sample.
+    pub part: f64,
+    /// Standard errors over those of independent residuals: the least and the largest of a parameter inside its bounds.
+    pub factor: (f64, f64),
+}
+
 /// Standard errors and correlations of the parameters, in the order of [`crate::Model::parameters`] and in their units.
 ///
-/// They hold for independent errors of ln f of equal size, and as far as the model is linear over them.
+/// They hold as far as the model is linear over them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Standard deviation of a residual of ln f; infinite without degrees of freedom.
     pub scale: f64,
     /// Samples less parameters inside their bounds.
     pub degrees_of_freedom: usize,
+    /// Those that the standard errors have, for Student's t: the same for independent residuals, fewer for correlated ones.
+    pub effective: f64,
+    /// The correlation of the residuals, where standard errors account for it; none of [`crate::fit`].
+    pub misfit: Option<Misfit>,
     /// Where each parameter ended; `None` where the model does not have it.
     pub places: Vec<Option<Place>>,
     /// How far beyond its bound the data want a parameter that is on one, in standard errors, positive towards larger values.
     pub push: Values,
-    /// Standard errors with the parameters on a bound held there; 0 where held or absent, infinite where no sample depends on it.
+    /// Standard errors; 0 where held, on a bound or absent, infinite where no sample depends on it.
+    ///
+    /// A parameter on a bound may be inside it, and the others then follow: that is part of their errors, the less the harder the data push.
     pub stderr: Values,
     /// Their covariance.
     pub cov: Vec<Values>,
@@ -31,14 +51,14 @@ pub struct Uncertainty {
     pub condition: f64,
     /// Standard errors as if no parameter was held by a bound, linear in kappa^2: what is known only because another parameter is on its bound is not known here.
     pub stderr_lifted: Values,
-    /// The principal axes behind `cov`: row k is a displacement of one standard error.
+    /// The principal axes behind `cov`: row k is a displacement of one standard error; that of a parameter on a bound is how far it may be inside, kappa as at [`NEAR_ZERO`].
     pub axes: Vec<Values>,
     /// Those behind `stderr_lifted`.
     pub axes_lifted: Vec<Values>,
 }
 
 impl Uncertainty {
-    /// Standard error of a quantity with this gradient by the parameters, whatever is on a bound held there.
+    /// Standard error of a quantity with this gradient by the parameters, at [`crate::Material::off_zero`].
     pub fn stderr_of(&self, gradient: &[f64]) -> f64 {
         along(&self.axes, gradient)
     }
@@ -47,6 +67,48 @@ impl Uncertainty {
     pub fn inside(&self) -> impl Iterator<Item = usize> {
         (0..self.places.len()).filter(|&index| self.places[index] == Some(Place::Inside))
     }
+
+    /// The same with other axes, and what follows from them.
+    pub fn with_axes(mut self, axes: Vec<Values>) -> Self {
+        let count = self.places.len();
+        let has = |i: usize| matches!(self.places[i], Some(Place::Inside | Place::Unseen));
+        let covariance = |i: usize, j: usize| {
+            let products = axes.iter().map(|axis| axis[i] * axis[j]);
+            if has(i) && has(j) { products.sum() } else { 0.0 }
+        };
+        let stderr = Values::from_fn(count, |i| Real::sqrt(covariance(i, i)));
+        let correlation = |i: usize, j: usize| {
+            let scale = stderr[i] * stderr[j];
+            if scale > 0.0 && scale.is_finite() {
+                (covariance(i, j) / scale).clamp(-1.0, 1.0)
+            } else {
+                0.0
+            }
+        };
+        let matrix =
+            |of: &dyn Fn(usize, usize) -> f64| (0..count).map(|i| Values::from_fn(count, |j| of(i, j))).collect();
+        self.cov = matrix(&covariance);
+        self.correlation = matrix(&correlation);
+        self.stderr = stderr;
+        self.axes = axes;
+        self
+    }
+}
+
+/// Mean square of a normal number of mean -`push` and variance 1 that is known to be above 0: how far inside its bound a parameter on it may lie, in standard errors.
+///
+/// 1 where the data want it on the bound, and 2 / push^2 where they push hard.
+pub fn inside_of_bound(push: f64) -> f64 {
+    let push = push.abs();
+    // Mills' ratio by Laplace's continued fraction where the two parts below cancel.
+    let mean = if push > 6.0 {
+        (1..=20).rev().fold(push, |rest, k| push + f64::from(k) / rest)
+    } else {
+        let density = Real::exp(-0.5 * push * push) / Real::sqrt(2.0 * std::f64::consts::PI);
+        density / (0.5 * libm::erfc(push * std::f64::consts::FRAC_1_SQRT_2))
+    };
+    // With mean = push + 1 / (push + 2 / (...)): 1 - push (mean - push).
+    1.0 - push * (mean - push)
 }
 
 /// Standard error of a quantity with this gradient from axes of one standard error.
@@ -82,27 +144,45 @@ pub(crate) fn at<const P: usize>(
         layout.coordinate(place).filter(|_| part)
     };
     let vector = |of: &dyn Fn(usize) -> f64| Values::from_fn(count, |place| coordinate(place).map_or(0.0, of));
-    let matrix = |of: &dyn Fn(usize, usize) -> f64| -> Vec<Values> {
+    let rows = |axes: &Axes<f64, P>| -> Vec<Values> {
         let row = |place: usize| match coordinate(place) {
-            Some(i) => vector(&|j| of(i, j)),
+            Some(i) => vector(&|j| axes.rows[i][j]),
             None => vector(&|_| 0.0),
         };
         (0..count).map(row).collect()
     };
-    let rows = |axes: &Axes<f64, P>| matrix(&|i, j| axes.rows[i][j]);
-    Uncertainty {
+    let mut with_bounds = held;
+    for i in 0..P {
+        if matches!(known.places[i], Place::Lower | Place::Upper) {
+            // It cannot lie farther inside than the other bound.
+            let most = (bounds.upper[i] - bounds.lower[i]) / known.along[i][i];
+            let size = Real::sqrt(inside_of_bound(known.push[i])).min(most.abs());
+            for j in 0..P {
+                let slope = if layout.squared() == Some(j) && x[j] == 0.0 {
+                    0.5 / NEAR_ZERO
+                } else {
+                    slopes[j]
+                };
+                with_bounds.rows[i][j] = known.along[i][j] * size * slope;
+            }
+        }
+    }
+    let of_axes = Uncertainty {
         scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
+        effective: known.degrees_of_freedom as f64,
+        misfit: None,
         places: (0..count)
             .map(|place| coordinate(place).map(|k| known.places[k]))
             .collect(),
         push: vector(&|k| known.push[k]),
-        stderr: vector(&|k| held.standard_error(k)),
-        cov: matrix(&|i, j| held.covariance(i, j)),
-        correlation: matrix(&|i, j| held.correlation(i, j)),
+        stderr: vector(&|_| 0.0),
+        cov: Vec::new(),
+        correlation: Vec::new(),
         condition: held.condition,
         stderr_lifted: vector(&|k| lifted.standard_error(k)),
-        axes: rows(&held),
+        axes: Vec::new(),
         axes_lifted: rows(&lifted),
-    }
+    };
+    of_axes.with_axes(rows(&with_bounds))
 }

@@ -3,7 +3,8 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use brdfit::analysis::choose;
-use brdfit::engine::{FitError, Model, Until, Values};
+use brdfit::analysis::fit::known;
+use brdfit::engine::{FitError, Model, Until, Values, robust};
 use brdfit::result::cell::Cell;
 use brdfit::result::columns::every;
 use brdfit::terms::term_names;
@@ -167,7 +168,10 @@ impl Work<'_> {
 
     fn one(&self, scan: usize, until: Until, table: &Table) -> Result<Kept, String> {
         let samples = self.scans.seen(scan, self.drop_invalid)?.samples;
-        let found = choose::fit(&samples, &self.asked(scan).until(until));
+        let found = choose::fit(&samples, &self.asked(scan).until(until)).map(|(options, outcome, choice)| {
+            let kept = robust::kept(&samples, &outcome);
+            (options, known(&kept, &options, outcome), choice)
+        });
         let kept = match found {
             Ok((options, outcome, _)) => Kept {
                 model: Some(outcome.model),

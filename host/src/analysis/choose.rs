@@ -94,6 +94,18 @@ pub fn sets(options: &FitOptions) -> Vec<FitOptions> {
     sets.filter(allowed).collect()
 }
 
+/// The terms of these options that the fewest which the scan supports would leave out, for a fit of the same samples; 0 if none, or if that cannot be told.
+pub fn left_out_by_auto(samples: &[Sample<f64>], options: &FitOptions) -> u8 {
+    let mut within = sets(options);
+    within.retain(|set| set.terms & !options.terms == 0);
+    if within.len() < 2 {
+        return 0;
+    }
+    choose(samples, &within).map_or(0, |choice| {
+        options.terms & options.model.terms & !choice.chosen().options.terms
+    })
+}
+
 /// Do the bounds permit what the terms leave out?
 fn allowed(options: &FitOptions) -> bool {
     (0..options.lower.len()).all(|place| {

@@ -67,7 +67,8 @@ pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncer
 
 /// At one angle of incidence, radians.
 pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
-    let value = |(value, mut gradient): (f64, Values)| {
+    let slopes = material.off_zero();
+    let value = |value: f64, mut gradient: Values| {
         for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
             // What a parameter of its own size does not change does not depend on it, however unknown that is.
             if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
@@ -80,15 +81,20 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
     let product = |rho: &str| {
         let place = |name: &str| material.model.place(name);
         let (rho, n, kappa) = (place(rho)?, place("n")?, place("kappa"));
-        let at = |place: usize| material.values[place];
-        let (f, d_n, d_kappa) = fresnel(Real::sin_cos(theta_i).1, at(n), kappa.map_or(0.0, at));
-        let mut gradient = Values::from_fn(material.values.len(), |_| 0.0);
-        gradient[n] = at(rho) * d_n;
-        if let Some(kappa) = kappa {
-            gradient[kappa] = at(rho) * d_kappa;
-        }
-        gradient[rho] = f;
-        (at(rho) * f > 0.0).then(|| value((at(rho) * f, gradient)))
+        let cos_i = Real::sin_cos(theta_i).1;
+        let of = |material: &Material| {
+            let at = |place: usize| material.values[place];
+            let (f, d_n, d_kappa) = fresnel(cos_i, at(n), kappa.map_or(0.0, at));
+            let mut gradient = Values::from_fn(material.values.len(), |_| 0.0);
+            gradient[n] = at(rho) * d_n;
+            if let Some(kappa) = kappa {
+                gradient[kappa] = at(rho) * d_kappa;
+            }
+            gradient[rho] = f;
+            (at(rho) * f, gradient)
+        };
+        let product = of(material).0;
+        (product > 0.0).then(|| value(product, of(&slopes).1))
     };
     let rho_s_f = product("rho_s");
     Derived {
@@ -96,7 +102,10 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
         rho_s_f,
         rho_v_f: product("rho_v"),
         peak: rho_s_f.and_then(|_| peak(theta_i, material, known)),
-        reflectance: value(reflectance(material, theta_i)),
+        reflectance: {
+            let (sum, gradient) = reflectance(material, theta_i);
+            value(sum, gradient)
+        },
     }
 }
 
@@ -105,9 +114,10 @@ fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> 
     const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
     let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));
     let sample = |theta_s: f64| Sample::in_plane(theta_i, theta_s, 1.0);
+    let slopes = lobe.off_zero();
     let ln_f = |theta_s: f64| lobe.ln_f(&sample(theta_s)).unwrap_or(f64::NEG_INFINITY);
     let gradient = |theta_s: f64| {
-        let mut gradient = lobe.gradient(&sample(theta_s))?.1;
+        let mut gradient = slopes.gradient(&sample(theta_s))?.1;
         for place in OTHERS.iter().filter_map(|name| material.model.place(name)) {
             gradient[place] = 0.0;
         }

@@ -6,8 +6,10 @@ use brdfit_core::geometry::Sample;
 
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
+use super::deviations::{self, Verdict};
 use super::hints::{self, Hint};
 use super::proof::Proof;
+use super::{misfit, unseen};
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use crate::error::Error;
@@ -35,6 +37,10 @@ pub struct FittedScan {
     pub outcome: Outcome,
     /// Sum of squared residuals of ln f over their variances, if the file gives standard deviations; that of a right model is near the degrees of freedom.
     pub chi2: Option<f64>,
+    /// What became of the standard deviations of the file, if it gives them.
+    pub deviations: Option<Verdict>,
+    /// Terms that the fewest which the scan supports would leave out of these, if that was asked; 0 for none.
+    pub left_out_by_auto: u8,
     /// Why this model and these terms, if the scan chose them.
     pub choice: Option<Choice>,
     /// What follows from it at each angle of incidence.
@@ -74,8 +80,15 @@ fn rounded(degrees: f64) -> f64 {
 
 impl FittedScan {
     /// Puts together what the engine found.
+    ///
+    /// Lobes that no sample sees are left out, and the uncertainty accounts for the correlation of the residuals.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
+        let mut outcome = known(&samples, options, outcome);
+        let mut verdict = None;
+        if let Some(sigma) = measurement.sigma_ln {
+            (outcome.uncertainty, verdict) = deviations::judged(&outcome.uncertainty, sigma);
+        }
         let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),
@@ -89,6 +102,8 @@ impl FittedScan {
             options: *options,
             chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
             outcome,
+            deviations: verdict,
+            left_out_by_auto: 0,
             choice: None,
             improved_from: None,
             proof: None,
@@ -126,6 +141,13 @@ impl FittedScan {
             ..FittedScan::new(measurement, &self.options, outcome, elapsed)
         })
     }
+}
+
+/// What the engine found of these samples, without lobes that none of them sees, and with errors that account for the correlation of the residuals.
+pub fn known(samples: &[Sample<f64>], options: &FitOptions, outcome: Outcome) -> Outcome {
+    let mut outcome = unseen::settled(samples, options, outcome);
+    outcome.uncertainty = misfit::uncertainty(samples, &outcome);
+    outcome
 }
 
 /// Fits one scan with what is wanted.

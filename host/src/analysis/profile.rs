@@ -4,6 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rayon::prelude::*;
 
+use super::misfit;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
@@ -49,6 +50,8 @@ pub struct Profile {
     pub points: Vec<Point>,
     /// Samples less parameters inside their bounds.
     pub degrees_of_freedom: usize,
+    /// The rises that end the intervals: those of the F test, with the correlation of the residuals.
+    pub limits: [f64; 2],
     /// At [`LEVELS`].
     pub intervals: [Interval; 2],
 }
@@ -142,7 +145,7 @@ fn is_better(samples: &[Sample<f64>], options: &FitOptions, point: &Point, outco
 /// Profiles parameter `index` of the model from bound to bound, starting from a fit of these samples with these options; in `f64`.
 ///
 /// Each point is the best of fits from its neighbours on both sides, from the minima of the fit, and from a search of its own.
-/// The intervals are those of the F test, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
+/// The intervals are those of the F test, with the correlation of the residuals, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
 ///
 /// # Errors
 /// [`FitError`].
@@ -154,7 +157,10 @@ pub fn profile(
     copies: u32,
 ) -> Result<Profile, FitError> {
     let degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
-    let limits = LEVELS.map(|level| threshold(level, degrees_of_freedom.max(1)));
+    // The ratio of likelihoods of independent residuals, scaled to the variance that they have (Rotnitzky and Jewell 1990).
+    let known = misfit::uncertainty(samples, outcome);
+    let inflation = misfit::inflation(&known, &outcome.uncertainty, index);
+    let limits = LEVELS.map(|level| inflation * threshold(level, known.effective.max(1.0)));
     let held = Held::new(samples, options, outcome, index);
     let (lower, upper) = (options.lower[index], options.upper[index]);
     let at = outcome.params[index];
@@ -192,6 +198,7 @@ pub fn profile(
         best: *points.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(&best),
         points,
         degrees_of_freedom,
+        limits,
         intervals: LEVELS.map(|level| Interval {
             level,
             low: End {
@@ -213,7 +220,7 @@ pub fn profile(
                 let null = profile.points.iter().find(|point| point.value == at).unwrap_or(&best);
                 let scale = outcome.uncertainty.scale;
                 let limits = calibrate::thresholds(samples, options, index, &null.params, scale, copies)?;
-                value = crossing(&mut profile, &held, limits[k], high)?;
+                value = crossing(&mut profile, &held, inflation * limits[k], high)?;
             }
             if let Some(value) = value {
                 let end = End { value, at_bound: false };

@@ -29,7 +29,8 @@ pub fn undetermined(material: &Material, known: &Uncertainty, derived: &[Derived
     let name = |index: usize| material.model.parameters[index].name;
     let open = |index: usize| match known.places[index] {
         None | Some(Place::Fixed) => false,
-        Some(Place::Unseen) => true,
+        // A weight that no sample sees is said to be that, and stays out of all else.
+        Some(Place::Unseen) => !material.model.parameters[index].is_weight(),
         Some(_) => {
             let size = if name(index) == "kappa" {
                 values[index].max(1.0)

@@ -59,6 +59,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     arguments.output.target(&arguments.scans)?;
     let subjects = subject::read(&arguments.scans, &arguments.read, "certify", streams)?;
     let target = arguments.output.target(&subject::inputs(&arguments.scans, &subjects))?;
+    let subjects = subject::settled(subjects, &wanted);
     let pool = arguments.search.pool()?;
     let clock = proving(streams.progress);
     let flag = interrupt::keeping();

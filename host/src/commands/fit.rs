@@ -9,11 +9,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::prove::{ProofArguments, ended, part, proving, so_far};
-use crate::analysis::choose::Wanted;
+use crate::analysis::choose::{Wanted, left_out_by_auto};
+use crate::analysis::deviations;
 use crate::analysis::fit::{FittedScan, fit};
 use crate::analysis::proof::{provable, prove};
 use crate::engine::certify::Certificate;
-use crate::engine::{FitOptions, Material, Method, Until};
+use crate::engine::{FitOptions, Material, Method, Until, robust};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, left_out};
 use crate::interrupt;
@@ -72,6 +73,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let pool = arguments.search.pool()?;
     let bar = progress(streams.progress, &wanted, measurements.len());
     // Of one scan nothing is finished before all is, but for its proof.
+    let settled = |measurement| deviations::settled(measurement, &wanted);
+    let measurements: Vec<Measurement> = pool.install(|| measurements.into_par_iter().map(settled).collect());
     let keeps = measurements.len() > 1 || arguments.certify.is_some();
     let interrupt = keeps.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
@@ -106,6 +109,17 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     clock.finish_and_clear();
     if arguments.output.format != TableFormat::Text && !arguments.time {
         reports.iter_mut().for_each(FittedScan::forget_times);
+    }
+    if arguments.output.format == TableFormat::Text {
+        let by_auto = |(measurement, report): (&Measurement, &mut FittedScan)| {
+            let kept = robust::kept(&measurement.samples, &report.outcome);
+            if report.choice.is_none() && report.options.method == Method::Default {
+                report.left_out_by_auto = left_out_by_auto(&kept, &report.options);
+            }
+        };
+        if reports.len() == measurements.len() {
+            pool.install(|| measurements.par_iter().zip(&mut reports).for_each(by_auto));
+        }
     }
     let ended = ended(&reports, measurements.len());
     if reports.is_empty() {

@@ -10,7 +10,9 @@ use clap::Args;
 
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose;
-use crate::analysis::profile::calibrate::{LEVELS, threshold};
+use crate::analysis::deviations;
+use crate::analysis::misfit;
+use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{End, Profile, Profiles, profiles};
 use crate::engine::{FitError, FitOptions, robust};
 use crate::error::{Error, shown};
@@ -59,6 +61,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
     let pool = arguments.search.pool()?;
+    let measurement = pool.install(|| deviations::settled(measurement, &wanted));
     let samples = &measurement.samples;
     let found = pool.install(|| -> Result<_, FitError> {
         let (options, outcome, choice) = choose::fit(samples, &wanted)?;
@@ -79,10 +82,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let (options, choice, found, copies) = found.map_err(|error| input::explain(&measurement, error))??;
     let fail = |what: &str| Error::new(what).in_file(measurement.label());
     let Profiles {
-        outcome,
+        mut outcome,
         improved_from,
         list: profiles,
     } = found;
+    outcome.uncertainty = misfit::uncertainty(&robust::kept(samples, &outcome), &outcome);
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
     }
@@ -128,7 +132,7 @@ fn panel(profile: &Profile) -> plot::ProfilePanel {
             .iter()
             .map(|point| (point.value, profile.rise(point)))
             .collect(),
-        levels: LEVELS.map(|level| (level, threshold(level, profile.degrees_of_freedom))),
+        levels: [0, 1].map(|k| (LEVELS[k], profile.limits[k])),
         ends: profile
             .intervals
             .map(|interval| [end(interval.low), end(interval.high)]),

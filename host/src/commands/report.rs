@@ -63,6 +63,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     let subjects = subject::read(&arguments.scans, &arguments.read, "report", streams)?;
     let inputs = subject::inputs(&arguments.scans, &subjects);
     let target = target(&inputs)?;
+    let subjects = subject::settled(subjects, &wanted);
     if let Some(folder) = &arguments.plot {
         make(folder)?;
     }

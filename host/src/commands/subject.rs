@@ -4,6 +4,8 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
+use crate::analysis::choose::Wanted;
+use crate::analysis::deviations;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions};
 use crate::page::results::{self, StoredFit};
@@ -35,6 +37,15 @@ pub(super) fn read(
         }
     }
     Ok(subjects)
+}
+
+/// The same with weights from the fitted BRDF, where the files give standard deviations.
+pub(super) fn settled(subjects: Vec<Subject>, wanted: &Wanted) -> Vec<Subject> {
+    let settled = |subject: Subject| Subject {
+        measurement: deviations::settled(subject.measurement, wanted),
+        ..subject
+    };
+    subjects.into_iter().map(settled).collect()
 }
 
 /// All files that are read: those given, and those that results among them name.

@@ -11,7 +11,7 @@ use super::options::{ReadAs, ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
 use super::side;
 use super::units::{Angles, Forward, Quantity};
-use super::weight;
+use super::weight::{self, Deviation};
 use crate::error::Error;
 use crate::number::shortest;
 
@@ -33,11 +33,13 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let (mut samples, mut lines) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut counts, mut faults) = (scan.left_out, Faults::default());
     let mut weights = weight::Count::default();
+    let mut deviations = Vec::new();
     for row in &scan.rows {
         let row = &turned_round(row, read_as.angles);
         match sample(row, &scan.places, &read_as, divisor, options) {
-            Seen::Valid(sample, kind) => {
+            Seen::Valid(sample, (kind, deviation)) => {
                 weights.add(kind);
+                deviations.push(deviation);
                 samples.push(sample);
                 lines.push(row.line);
             }
@@ -62,7 +64,10 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     if options.forward.is_none() && scan.about.kind != Kind::Own && !scan.about.settled {
         side::refuse(&samples)?;
     }
-    let sigma_ln = weights.normalise(&mut samples).or(scan.about.sigma_ln);
+    let of_file = weights.normalise(&mut samples);
+    let sigma_ln = of_file.or(scan.about.sigma_ln);
+    // Weights alone, as in a table of the program's own, tell no more.
+    deviations.retain(|_| of_file.is_some());
     Ok(Measurement {
         file: file.to_string(),
         name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
@@ -73,6 +78,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         samples,
         lines,
         sigma_ln,
+        deviations,
         left_out: counts.list(),
         masked,
         about: scan.about,
@@ -111,8 +117,8 @@ fn degrees(row: &Row, read_as: &ReadAs) -> f64 {
 
 /// What a row holds.
 enum Seen {
-    /// A sample whose weight is not normalised, and where that is from.
-    Valid(Sample<f64>, weight::Source),
+    /// A sample whose weight is not normalised, where that is from, and its standard deviation.
+    Valid(Sample<f64>, Known),
     /// What the user does not want; with a sample if it is one.
     Masked(Reason, Option<Sample<f64>>),
     /// Numbers that are no sample.
@@ -163,7 +169,7 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         Ok(brdf) => brdf,
         Err(what) => return invalid(places.value, what),
     };
-    let (weight, source) = match weight(row, read_as.quantity, options) {
+    let (weight, source) = match weight(row, read_as.quantity, options, sample.brdf) {
         Ok(known) => known,
         Err(what) => return invalid(places.weight, what),
     };
@@ -225,15 +231,25 @@ fn from_retro(sample: &Sample<f64>) -> f64 {
     (across * across + sin_i * sin_s * turned * turned).max(0.0).sqrt()
 }
 
+/// Where a weight is from, and what the file says of the value's standard deviation.
+type Known = (weight::Source, Deviation);
+const UNIT: Known = (
+    weight::Source::Unit,
+    Deviation {
+        absolute: 0.0,
+        relative: 0.0,
+    },
+);
+
 /// The weight of a row, not normalised, and where it is from.
-fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, weight::Source), String> {
+fn weight(row: &Row, quantity: Quantity, options: &ReadOptions, brdf: f64) -> Result<(f64, Known), String> {
     let known = match options.weights {
         Weights::File => row.weight,
         Weights::Equal => Weight::Unknown,
     };
     let sigma = match known {
-        Weight::Unknown => return Ok((1.0, weight::Source::Unit)),
-        Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, weight::Source::Unit)),
+        Weight::Unknown => return Ok((1.0, UNIT)),
+        Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, UNIT)),
         Weight::Factor(factor) => {
             return Err(format!(
                 "the weight is {}, and must be a number from 0 on",
@@ -248,7 +264,19 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions) -> Result<(f64, 
     };
     let whole = (sigma * sigma + options.sigma_floor * options.sigma_floor).sqrt();
     if sigma >= 0.0 && whole >= f64::MIN_POSITIVE && whole.is_finite() {
-        Ok((1.0 / whole, weight::Source::Sigma))
+        let is_absolute = matches!(known, Weight::Sigma(_)) && quantity.is_logarithm().is_none();
+        let deviation = if is_absolute {
+            Deviation {
+                absolute: sigma * brdf,
+                relative: options.sigma_floor,
+            }
+        } else {
+            Deviation {
+                absolute: 0.0,
+                relative: whole,
+            }
+        };
+        Ok((1.0 / whole, (weight::Source::Sigma, deviation)))
     } else {
         let what = format!(
             "the relative standard deviation is {}, which gives no weight",

@@ -11,6 +11,36 @@ pub enum Source {
     Sigma,
 }
 
+/// The standard deviation of a value in parts: `absolute` in the unit of the BRDF, `relative` of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Deviation {
+    /// In sr^-1.
+    pub absolute: f64,
+    /// Dimensionless.
+    pub relative: f64,
+}
+
+impl Deviation {
+    /// The whole over a BRDF, which is that of its logarithm to first order.
+    pub fn over(&self, brdf: f64) -> f64 {
+        libm::hypot(self.absolute / brdf, self.relative)
+    }
+
+    /// The standard deviation of the logarithm of a value around `brdf` with normal noise, and how far its mean is low: to fourth order in the noise, and no more for one that is half noise.
+    pub fn of_ln(&self, brdf: f64) -> (f64, f64) {
+        const HALF: f64 = 0.25;
+        let sigma = self.over(brdf);
+        let square = (sigma * sigma).min(HALF);
+        (sigma * libm::sqrt(1.0 + 2.5 * square), square * (0.5 + 0.75 * square))
+    }
+}
+
+/// Normalises weights that are one over standard deviations of ln f; returns that of a weight of 1.
+pub fn normalised(samples: &mut [Sample<f64>]) -> f64 {
+    let count = Count { sigmas: 1, others: 0 };
+    count.normalise(samples).unwrap_or(1.0)
+}
+
 /// Where the weights of a scan are from.
 #[derive(Debug, Default)]
 pub struct Count {

@@ -6,7 +6,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::section::{Section, Table};
 use crate::analysis::choose::Choice;
 use crate::analysis::derived::{Derived, Value};
+use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
+use crate::analysis::unseen;
 use crate::engine::Outcome;
 use crate::input::left_out;
 use crate::names;
@@ -112,6 +114,12 @@ fn summary(section: &Section) -> Markup {
                     " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
                 }
             }
+            @if unseen::is_exact(known) { li.flag { (capital(words::EXACT)) "." } }
+            @let unseen = unseen::names(outcome);
+            @if !unseen.is_empty() { li.flag { (words::unseen(&unseen)) "." } }
+            @if let Some(misfit) = &known.misfit {
+                li { (capital(&words::correlated(misfit))) "." }
+            }
             @for open in undetermined(&outcome.material(), known, &fit.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
@@ -134,7 +142,12 @@ fn parameters(section: &Section) -> Markup {
     let known = &outcome.uncertainty;
     html! {
         table {
-            caption { "Parameters of the best fit, dimensionless where no unit is given; ± is one standard error." }
+            caption {
+                "Parameters of the best fit, dimensionless where no unit is given; ± is one standard error"
+                @let factor = coverage_factor(known);
+                @if factor.is_finite() { ", and a 95 % interval ± " (format!("{factor:.1}")) " of them" }
+                "."
+            }
             thead { tr { th.text { "parameter" } th.text { "meaning" } th { "value" } th { "±" } th { "bounds" } th.text { "remark" } } }
             tbody {
                 @for index in outcome.present() {
@@ -153,6 +166,14 @@ fn parameters(section: &Section) -> Markup {
         @let strong = correlated(section);
         @if !strong.is_empty() { p.note { "Strongly correlated: " (strong.join("; ")) ". The condition number of J'J is " (two(known.condition)) "." } }
     }
+}
+
+/// A sentence with a capital letter.
+fn capital(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters
+        .next()
+        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// What the model or its terms were chosen from.
@@ -196,7 +217,7 @@ fn remark(section: &Section, index: usize) -> String {
         Some(Place::Lower) => on("lower", known.push[index]),
         Some(Place::Upper) => on("upper", known.push[index]),
         Some(Place::Fixed) => "fixed".into(),
-        Some(Place::Unseen) => "no sample depends on it".into(),
+        Some(Place::Unseen) => "not seen by this scan".into(),
         _ => {
             let open = undetermined(&outcome.material(), known, &section.fit.derived);
             let name = outcome.model.parameters[index].name;

@@ -8,6 +8,7 @@ use brdfit_core::uncertainty::Place;
 use super::cell::{Cell, Kind};
 use crate::analysis::derived::Derived;
 use crate::analysis::fit::FittedScan;
+use crate::analysis::misfit::coverage_factor;
 use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
 use crate::names;
 use crate::number::shortest;
@@ -267,7 +268,29 @@ fn known(models: &[&Model]) -> Vec<Column> {
         (known.places[index] == Some(Place::Inside)).then_some(known.stderr[index])
     };
     let one = |of| parameter("stderr_", "standard error of the ", of, stderr);
-    std::iter::once(degrees)
+    let factor = number(
+        "coverage_factor_95",
+        "1",
+        "standard errors that are the half of a 95 % interval",
+        Json::Otherwise,
+        |row| Some(coverage_factor(&row.outcome.uncertainty)),
+    );
+    let over = number(
+        "correlated_over_deg",
+        "deg",
+        "angle over which residuals are correlated",
+        Json::Otherwise,
+        |row| Some(row.outcome.uncertainty.misfit?.length.to_degrees()),
+    );
+    let times = number(
+        "error_factor",
+        "1",
+        "largest standard error over that of independent residuals",
+        Json::Otherwise,
+        |row| Some(row.outcome.uncertainty.misfit?.factor.1),
+    );
+    [degrees, factor, over, times]
+        .into_iter()
         .chain(every(models).into_iter().map(one))
         .collect()
 }

@@ -122,7 +122,7 @@ fn document(scan: &FittedScan) -> Document<'_> {
         parameters: parameters(&outcome.params),
         bounds: Columns(scan, Json::Bounds),
         selection: scan.choice.as_ref().map(selection),
-        uncertainty: known(&outcome.material(), &outcome.uncertainty, &scan.derived),
+        uncertainty: known(outcome, &scan.derived),
         derived: scan.derived.iter().map(at_angle).collect(),
         end: Columns(scan, Json::End),
         minima: outcome.minima.iter().map(minimum).collect(),

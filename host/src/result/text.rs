@@ -71,7 +71,11 @@ fn page(fit: &FittedScan, minima: bool) -> String {
     }
     if let Some(chi2) = fit.chi2 {
         let degrees = outcome.uncertainty.degrees_of_freedom;
-        line(format!("  chi^2      {} of {degrees} degrees of freedom", six(chi2)));
+        let verdict = fit.deviations.map_or_else(String::new, words::deviations);
+        line(format!(
+            "  chi^2      {} of {degrees} degrees of freedom{verdict}",
+            six(chi2)
+        ));
     }
     if let Some(robust) = &outcome.robust {
         line(format!(
@@ -100,8 +104,14 @@ fn page(fit: &FittedScan, minima: bool) -> String {
         line(choice);
     }
     let weighted = fit.read_as.weighted;
-    for known in uncertainty::lines(&outcome.material(), &outcome.uncertainty, &fit.derived, weighted) {
+    for known in uncertainty::lines(outcome, &fit.derived, weighted) {
         line(known);
+    }
+    if fit.left_out_by_auto != 0 {
+        let terms = term_names(fit.left_out_by_auto).join(", ");
+        line(format!(
+            "  evidence   there is none for {terms}: --terms auto leaves that out"
+        ));
     }
     for hint in &fit.hints {
         line(format!("  hint       {}", hint.text));

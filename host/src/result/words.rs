@@ -2,8 +2,10 @@
 
 use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
+use crate::analysis::deviations::Verdict;
 use crate::analysis::proof::Proof;
 use crate::analysis::undetermined::Undetermined;
+use crate::engine::uncertainty::Misfit;
 use crate::number::{four, percent, percent_up, two};
 use crate::terms::term_names;
 
@@ -30,6 +32,44 @@ pub fn sentence(what: &Undetermined) -> String {
             )
         }
     }
+}
+
+/// What is said of lobes that no sample sees.
+pub fn unseen(names: &[&str]) -> String {
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    format!(
+        "{} {verb} not seen by this scan, and left out of all that follows",
+        listed(names)
+    )
+}
+
+/// What became of the standard deviations of a file, behind its chi^2.
+pub fn deviations(verdict: Verdict) -> String {
+    match verdict {
+        Verdict::Used => ": errors are those of the file's standard deviations".into(),
+        Verdict::Refuted(ratio) => format!(
+            ": that refutes the file's standard deviations, and errors are {} times theirs",
+            two(ratio)
+        ),
+    }
+}
+
+/// What is said of a fit without residuals.
+pub const EXACT: &str = "the fit is exact: no residual tells of errors, and so nothing has a standard error";
+
+/// How far residuals are correlated and what it does to errors, such as "residuals are correlated over 14 deg: errors are 2.0 to 4.1 times those of independent ones".
+pub fn correlated(misfit: &Misfit) -> String {
+    let (least, most) = misfit.factor;
+    let times = match (factor(least), factor(most)) {
+        (least, most) if least == most => most,
+        (least, most) => format!("{least} to {most}"),
+    };
+    let over = two(misfit.length.to_degrees());
+    format!("residuals are correlated over {over} deg: errors are {times} times those of independent ones")
+}
+
+fn factor(factor: f64) -> String {
+    format!("{factor:.1}")
 }
 
 /// One sentence on what the scene needs.
@@ -90,8 +130,11 @@ pub fn candidate(choice: &Choice, one: &Candidate) -> String {
     }
 }
 
-/// A value with its standard error, as "0.5123 +- 0.0021".
+/// A value with its standard error, as "0.5123 +- 0.0021"; without one that is not known.
 pub fn shown(value: Value) -> String {
+    if !value.stderr.is_finite() {
+        return four(value.value);
+    }
     format!("{} +- {}", four(value.value), two(value.stderr))
 }
 

@@ -2,7 +2,7 @@
 
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::hold::hold;
 use crate::analysis::bootstrap::{Noise, copy, quantile};
@@ -12,9 +12,13 @@ use crate::engine::{self, FitError, FitOptions, Material, Values};
 pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
 
 /// The rise of the cost over the variance of a residual that ends an interval of this level: the square of Student's t (F of 1 and `degrees_of_freedom`).
-pub fn threshold(level: f64, degrees_of_freedom: usize) -> f64 {
-    let t =
-        StudentsT::new(0.0, 1.0, degrees_of_freedom as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(0.5 + 0.5 * level));
+pub fn threshold(level: f64, degrees_of_freedom: f64) -> f64 {
+    let share = 0.5 + 0.5 * level;
+    let t = if degrees_of_freedom.is_infinite() {
+        Normal::standard().inverse_cdf(share)
+    } else {
+        StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(share))
+    };
     t * t
 }
 

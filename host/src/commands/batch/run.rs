@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::analysis::choose::Wanted;
+use crate::analysis::deviations;
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
 use crate::engine::Model;
 use crate::error::Error;
@@ -68,6 +69,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
         if job.interrupt.load(Ordering::Relaxed) {
             return None;
         }
+        let measurement = deviations::settled(measurement, job.wanted);
         Some(match fit(&measurement, job.wanted) {
             Ok(scan) => fitted(job, scan, &measurement),
             Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,

@@ -8,6 +8,7 @@ use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::{End, Interval};
 use crate::number::{percent, significant, two};
 use crate::result::text::choice;
+use crate::result::words::correlated;
 
 /// The table of the intervals.
 pub fn write(findings: &Findings) -> String {
@@ -19,6 +20,15 @@ pub fn write(findings: &Findings) -> String {
         percent(known.scale),
         known.degrees_of_freedom
     );
+    if let Some(misfit) = &known.misfit {
+        let copies = if findings.copies.is_empty() {
+            ""
+        } else {
+            "; copies of the bootstrap have independent ones"
+        };
+        page.truncate(page.trim_end().len());
+        let _ = write!(page, "\n  {}{copies}\n\n", correlated(misfit));
+    }
     let row = |page: &mut String, cells: [&str; 5]| {
         let [name, best, error, one, two] = cells;
         let line = format!("  {name:<9} {best:>11}  {error:>9}  {one:<26} {two}");

@@ -5,10 +5,11 @@ use serde::Serialize;
 
 use super::by_name::ByName;
 use crate::analysis::derived::{Derived, Value};
+use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
-use crate::engine::Material;
-use crate::engine::uncertainty::Uncertainty;
-use crate::result::words::sentence;
+use crate::analysis::unseen;
+use crate::engine::Outcome;
+use crate::result::words::{correlated, sentence};
 
 /// What is known of the parameters.
 #[derive(Serialize)]
@@ -16,6 +17,12 @@ pub struct Known {
     /// Standard deviation of a residual of ln f.
     residual_scale: f64,
     degrees_of_freedom: usize,
+    /// For Student's t: fewer where residuals are correlated, null where errors are those of the file.
+    effective_degrees_of_freedom: f64,
+    /// So many standard errors are the half of a 95 % interval.
+    coverage_factor_95: f64,
+    /// Null where residuals are independent.
+    correlated: Option<Correlated>,
     /// Of J'J, columns scaled, over the parameters inside their bounds.
     condition: f64,
     /// Null where a parameter has none.
@@ -24,7 +31,23 @@ pub struct Known {
     stderr_without_bounds: ByName<Option<f64>>,
     correlation: ByName<ByName<f64>>,
     on_bound: Vec<OnBound>,
+    /// Weights of lobes that no sample sees.
+    not_seen: Vec<&'static str>,
+    /// Without residuals nothing has a standard error.
+    exact: bool,
     undetermined: Vec<Open>,
+}
+
+/// The correlation of the residuals along the angle.
+#[derive(Serialize)]
+struct Correlated {
+    /// Where it falls to 1/e.
+    over_deg: f64,
+    /// Part of the variance of a residual.
+    part: f64,
+    /// Errors over those of independent residuals, least and largest.
+    factor: [f64; 2],
+    sentence: String,
 }
 
 #[derive(Serialize)]
@@ -66,7 +89,8 @@ fn number(Value { value, stderr }: Value) -> Number {
 }
 
 /// The uncertainty of one fit.
-pub fn known(material: &Material, known: &Uncertainty, derived: &[Derived]) -> Known {
+pub fn known(outcome: &Outcome, derived: &[Derived]) -> Known {
+    let (material, known) = (&outcome.material(), &outcome.uncertainty);
     let model = material.model;
     let on_bound = (0..model.parameters.len()).filter_map(|k| {
         let bound = match known.places[k]? {
@@ -86,14 +110,26 @@ pub fn known(material: &Material, known: &Uncertainty, derived: &[Derived]) -> K
     Known {
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
+        effective_degrees_of_freedom: known.effective,
+        coverage_factor_95: coverage_factor(known),
+        correlated: known.misfit.as_ref().map(|misfit| Correlated {
+            over_deg: misfit.length.to_degrees(),
+            part: misfit.part,
+            factor: misfit.factor.into(),
+            sentence: correlated(misfit),
+        }),
         condition: known.condition,
-        stderr: ByName::new(model, |k| has(k, Place::Inside).then_some(known.stderr[k])),
+        stderr: ByName::new(model, |k| {
+            (has(k, Place::Inside) && known.stderr[k].is_finite()).then_some(known.stderr[k])
+        }),
         stderr_without_bounds: ByName::new(model, |k| {
             let free = has(k, Place::Inside) || has(k, Place::Lower) || has(k, Place::Upper);
             free.then_some(known.stderr_lifted[k])
         }),
         correlation: ByName::new(model, |i| ByName::new(model, |j| known.correlation[i][j])),
         on_bound: on_bound.collect(),
+        not_seen: unseen::names(outcome),
+        exact: unseen::is_exact(known),
         undetermined: open.collect(),
     }
 }

@@ -3,11 +3,13 @@
 use brdfit_core::uncertainty::Place;
 
 use crate::analysis::derived::{Derived, Value};
+use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
-use crate::engine::Material;
+use crate::analysis::unseen;
+use crate::engine::Outcome;
 use crate::engine::uncertainty::Uncertainty;
 use crate::number::{percent, six, two};
-use crate::result::words::{sentence, shown};
+use crate::result::words::{self, EXACT, correlated, sentence, shown};
 
 /// Correlations from this on are listed.
 const STRONG: f64 = 0.9;
@@ -21,14 +23,15 @@ pub fn remark(index: usize, known: &Uncertainty) -> String {
         Some(Place::Inside) | None => String::new(),
         Some(Place::Lower | Place::Upper) => "  at its bound".into(),
         Some(Place::Fixed) => "  fixed".into(),
-        Some(Place::Unseen) => "  no sample depends on it".into(),
+        Some(Place::Unseen) => "  not seen by this scan".into(),
     }
 }
 
 /// Lines on what is known, what is not, and what follows.
 ///
 /// With weights, the residual is in their unit and no part of f.
-pub fn lines(material: &Material, known: &Uncertainty, derived: &[Derived], weighted: bool) -> Vec<String> {
+pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<String> {
+    let (material, known) = (&outcome.material(), &outcome.uncertainty);
     let names: Vec<&str> = material
         .model
         .parameters
@@ -50,6 +53,20 @@ pub fn lines(material: &Material, known: &Uncertainty, derived: &[Derived], weig
         known.degrees_of_freedom,
         two(known.condition)
     ));
+    if unseen::is_exact(known) {
+        lines.push(format!("    {EXACT}"));
+    }
+    let unseen = unseen::names(outcome);
+    if !unseen.is_empty() {
+        lines.push(format!("    {}", words::unseen(&unseen)));
+    }
+    if let Some(misfit) = &known.misfit {
+        lines.push(format!("    {}", correlated(misfit)));
+    }
+    let expanded = coverage_factor(known);
+    if (expanded - 2.0).abs() > 0.05 {
+        lines.push(format!("    95 % intervals are +- {expanded:.1} of these errors"));
+    }
     for what in undetermined(material, known, derived) {
         lines.push(format!("    {}", sentence(&what)));
     }

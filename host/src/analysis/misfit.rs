@@ -1,0 +1,152 @@
+//! Standard errors where the residuals of neighbours are alike: they wander with the angle where the model does not fit, or where the instrument drifts.
+//!
+//! The residuals along each line of angles are taken for a stationary process whose correlation falls exponentially with the angle, and noise of each sample beside it ([`process`]).
+//! The likelihood of what the fit leaves of them (REML, Patterson and Thompson 1971) says how long the correlation reaches and how large a part it is; the fit itself stays that of least squares, whose covariance is the sandwich `(J'J)^-1 J'VJ (J'J)^-1` with the process's covariance V.
+//! A sum of weighted autocovariances (Newey and West 1987) needs many correlation lengths in a scan, and a scan has three to ten: the likelihood does not lose what the fit has taken out of the residuals.
+//! The covariance is the mean over all lengths and parts, by their likelihood; how much it varies among them widens the tails ([`mixture`]), as fewer degrees of freedom do.
+
+pub mod lines;
+pub mod mixture;
+pub mod process;
+
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
+use brdfit_core::uncertainty::Place;
+
+use super::profile::calibrate::threshold;
+use super::unseen;
+use crate::engine::uncertainty::{Misfit, Uncertainty};
+use crate::engine::{Material, Outcome, Values};
+use process::{Node, Point};
+
+/// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
+const EVIDENCE: f64 = 2.0;
+
+/// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
+pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
+    let known = &outcome.uncertainty;
+    corrected(samples, &outcome.material(), known).unwrap_or_else(|| unseen::doubted(known))
+}
+
+/// So many standard errors are the half of a 95 % interval: Student's t of the effective degrees of freedom; infinite without any.
+pub fn coverage_factor(known: &Uncertainty) -> f64 {
+    Real::sqrt(threshold(0.95, known.effective))
+}
+
+/// By how much correlation raises the variance of parameter `index` of the same fit with independent residuals; that of the least known if it has none itself.
+pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -> f64 {
+    let own = known.stderr[index] / independent.stderr[index];
+    let most = known.misfit.map_or(1.0, |misfit| misfit.factor.1);
+    let factor = if own.is_finite() && own > 0.0 { own } else { most };
+    factor * factor
+}
+
+/// `None` where independence is not refuted, or nothing can be said.
+fn corrected(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Option<Uncertainty> {
+    let inside: Vec<usize> = known.inside().collect();
+    if known.degrees_of_freedom < 4 || unseen::is_exact(known) || inside.is_empty() {
+        return None;
+    }
+    let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
+    let lines = points(samples, material, &axes, known.scale)?;
+    let seen: Vec<bool> = (0..axes.len())
+        .map(|k| {
+            let squares: f64 = lines.iter().flatten().map(|point| point.row[k] * point.row[k]).sum();
+            (0.5..2.0).contains(&squares)
+        })
+        .collect();
+    if !seen.contains(&true) {
+        return None;
+    }
+    let lines: Vec<Vec<Point>> = lines.into_iter().map(|line| kept(line, &seen)).collect();
+    let nodes = process::nodes(&lines, known.degrees_of_freedom, EVIDENCE)?;
+    Some(with(known, &inside, &seen, &nodes))
+}
+
+/// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite.
+fn points(samples: &[Sample<f64>], material: &Material, axes: &[&Values], scale: f64) -> Option<Vec<Vec<Point>>> {
+    let slopes = material.off_zero();
+    let one = |line: usize, &(place, angle): &(usize, f64)| {
+        let sample = &samples[place];
+        let residual = material.residual(sample)?;
+        let gradient = slopes.gradient(sample)?.1;
+        let along = |axis: &&Values| {
+            let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
+            sum * sample.weight / scale
+        };
+        let row: Vec<f64> = axes.iter().map(along).collect();
+        let point = Point {
+            angle,
+            offset: angle - sample.theta_i,
+            line,
+            residual: residual / scale,
+            row,
+        };
+        let finite = point.residual.is_finite() && point.row.iter().all(|x| x.is_finite());
+        finite.then_some(point)
+    };
+    let lines = lines::of(samples);
+    let lines = lines.iter().enumerate();
+    lines
+        .map(|(number, line)| line.iter().map(|point| one(number, point)).collect())
+        .collect()
+}
+
+fn kept(line: Vec<Point>, seen: &[bool]) -> Vec<Point> {
+    let columns = |row: Vec<f64>| row.into_iter().zip(seen).filter(|(_, seen)| **seen).map(|(x, _)| x);
+    line.into_iter()
+        .map(|point| Point {
+            row: columns(point.row).collect(),
+            ..point
+        })
+        .collect()
+}
+
+/// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.
+fn with(known: &Uncertainty, inside: &[usize], seen: &[bool], nodes: &[Node]) -> Uncertainty {
+    let seen: Vec<usize> = (0..inside.len()).filter(|&k| seen[k]).map(|k| inside[k]).collect();
+    let count = seen.len();
+    let mean = |of: &dyn Fn(&Node) -> f64| nodes.iter().map(|node| node.weight * of(node)).sum::<f64>();
+    let trace = |node: &Node| (0..count).map(|k| node.covariance[k][k]).sum::<f64>();
+    let size = mean(&trace);
+    let sizes: Vec<(f64, f64)> = nodes.iter().map(|node| (node.weight, trace(node) / size)).collect();
+    let student = mixture::matched(&sizes, known.degrees_of_freedom as f64);
+    let covariance: Vec<Vec<f64>> = (0..count)
+        .map(|i| {
+            (0..count)
+                .map(|j| mean(&|node| node.covariance[i][j]) * student.variance)
+                .collect()
+        })
+        .collect();
+    let root = process::cholesky(&covariance);
+    let mut axes = known.axes.clone();
+    for (i, &place) in seen.iter().enumerate() {
+        axes[place] = Values::from_fn(known.places.len(), |k| {
+            // Columns of the root: the covariance is root root'.
+            (i..count).map(|j| root[j][i] * known.axes[seen[j]][k]).sum()
+        });
+    }
+    // What is on a bound may be inside it by so much more.
+    let whole = Real::sqrt(size * student.variance / count as f64).max(1.0);
+    for (axis, place) in axes.iter_mut().zip(&known.places) {
+        if matches!(place, Some(Place::Lower | Place::Upper)) {
+            axis.iter_mut().for_each(|part| *part *= whole);
+        }
+    }
+    let mut corrected = known.clone().with_axes(axes);
+    let lift = |values: &Values| values.iter().map(|x| x * whole).collect::<Values>();
+    corrected.axes_lifted = known.axes_lifted.iter().map(lift).collect();
+    corrected.stderr_lifted = lift(&known.stderr_lifted);
+    let factors = inside.iter().map(|&k| corrected.stderr[k] / known.stderr[k]);
+    let factors = factors.filter(|factor| factor.is_finite());
+    let factor = factors.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), factor| {
+        (a.min(factor), b.max(factor))
+    });
+    corrected.effective = student.degrees;
+    corrected.misfit = Some(Misfit {
+        length: mean(&|node| node.process.length),
+        part: mean(&|node| node.process.part),
+        factor,
+    });
+    corrected
+}

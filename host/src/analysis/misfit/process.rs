@@ -1,0 +1,289 @@
+//! The likelihood of a process with exponential correlation, and what it makes of a least-squares fit.
+
+use brdfit_core::real::Real;
+
+/// A sample along its line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Where, radians, ascending along the line.
+    pub angle: f64,
+    /// How far from the specular direction of its line, radians.
+    pub offset: f64,
+    /// Which line it is of.
+    pub line: usize,
+    /// Its residual over the standard deviation of all.
+    pub residual: f64,
+    /// Its row of J in coordinates in which J'J is 1.
+    pub row: Vec<f64>,
+}
+
+/// A stationary process beside noise of each sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Process {
+    /// Angle over which the correlation falls to 1/e, radians.
+    pub length: f64,
+    /// Part of the variance that is correlated; 0 for independent residuals.
+    pub part: f64,
+    /// Has it a slope? Then its correlation over x lengths is that of Matern with 3/2, else exponential.
+    pub smooth: bool,
+}
+
+/// One process that the residuals may be of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// The process.
+    pub process: Process,
+    /// Its share of the likelihood of all.
+    pub weight: f64,
+    /// Covariance of the fit, in the coordinates of the rows: 1 for independent residuals.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// Parts of the variance that are correlated.
+const PARTS: [f64; 9] = [0.1, 0.25, 0.45, 0.65, 0.8, 0.9, 0.96, 0.99, 0.999];
+/// Those that are looked at first, with every second length.
+const FIRST: [f64; 3] = [0.25, 0.65, 0.96];
+/// Before the scan is seen a length x times another is likelier by x to this power: short scans tell less of long ones than there is.
+const LONGER: f64 = 0.25;
+/// And smooth processes are less likely, by this in the logarithm; without noise the two can be mistaken for each other.
+const RARE: f64 = 1.5;
+/// A correlation between lines below this is none.
+const LEAST_COMMON: f64 = 0.1;
+/// No process is longer than this part of a line: beyond, it is a factor of all values, of which residuals say nothing.
+const LONGEST: f64 = 0.34;
+/// (1 + x) exp(-x) is 1/e here.
+const SMOOTH: f64 = 2.146_193_220_620_582_6;
+
+/// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`.
+pub fn nodes(lines: &[Vec<Point>], degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
+    let lengths = lengths(lines)?;
+    let degrees = degrees_of_freedom as f64;
+    let independent = Process {
+        length: f64::MIN_POSITIVE,
+        part: 0.0,
+        smooth: false,
+    };
+    let all = |step: usize, parts: &[f64]| -> Vec<Process> {
+        let of = |length: f64| parts.iter().map(move |&part| (length, part));
+        let pairs = lengths.iter().step_by(step).flat_map(|&length| of(length));
+        let both = pairs.flat_map(|(length, part)| [false, true].map(|smooth| Process { length, part, smooth }));
+        both.collect()
+    };
+    let judged = |process: Process| (process, likelihood(lines, process, degrees));
+    let null = judged(independent);
+    let first = all(2, &FIRST).into_iter().map(|process| judged(process).1.0);
+    let most = first.fold(f64::NEG_INFINITY, f64::max);
+    if !(most > null.1.0 + evidence) {
+        return None;
+    }
+    let list: Vec<_> = all(1, &PARTS).into_iter().map(judged).chain([null]).collect();
+    // Independence counts as much as all else together.
+    let others = Real::ln(list.len() as f64 - 1.0);
+    let best = list.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
+    let share = |(process, (ln, _)): &(Process, (f64, f64))| {
+        let more = match process.part {
+            0.0 => others,
+            _ => LONGER * Real::ln(process.length / lengths[0]) - if process.smooth { RARE } else { 0.0 },
+        };
+        Real::exp(ln - best + more)
+    };
+    let total: f64 = list.iter().map(share).sum();
+    let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
+    let common = Common::new(lines);
+    let total: f64 = kept.iter().map(|one| share(one)).sum();
+    let node = |one: &&(Process, (f64, f64))| Node {
+        process: one.0,
+        weight: share(one) / total,
+        covariance: common.covariance(lines, one.0, one.1.1),
+    };
+    Some(kept.iter().map(node).collect())
+}
+
+/// Lengths from a step to a part of the longest line, each 1.6 times the last; `None` without lines of two.
+fn lengths(lines: &[Vec<Point>]) -> Option<Vec<f64>> {
+    let step = step_of(lines)?;
+    let span = lines
+        .iter()
+        .filter_map(|line| Some(line.last()?.angle - line.first()?.angle));
+    let most = LONGEST * span.fold(0.0, f64::max);
+    let grown = std::iter::successors(Some(0.7 * step), |length| Some(1.6 * length));
+    Some(grown.take_while(|&length| length <= most).collect())
+}
+
+/// The median angle between neighbours.
+fn step_of(lines: &[Vec<Point>]) -> Option<f64> {
+    let pairs = lines.iter().flat_map(|line| line.windows(2));
+    let mut steps: Vec<f64> = pairs
+        .map(|pair| pair[1].angle - pair[0].angle)
+        .filter(|&step| step > 0.0)
+        .collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied()
+}
+
+/// ln of the restricted likelihood of the residuals, but for a constant, and the variance that fits best; `degrees` is their number less that of the columns.
+///
+/// Kalman's filter gives what each sample brings anew, for the residuals and each column of J alike: the state is the process and its slope times its length.
+pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64, f64) {
+    let columns = lines.iter().flatten().next().map_or(0, |point| point.row.len());
+    let part = process.part;
+    let mut sums = vec![vec![0.0; columns + 1]; columns + 1];
+    let mut ln_determinant = 0.0;
+    let mut state = vec![[0.0; 2]; columns + 1];
+    let mut fresh = vec![0.0; columns + 1];
+    for line in lines {
+        state.fill([0.0; 2]);
+        // What the variance of the state is less than at rest.
+        let mut known = [0.0; 3];
+        let mut before: Option<f64> = None;
+        for point in line {
+            let step = before.map_or([[0.0; 2]; 2], |before| step(point.angle - before, process));
+            before = Some(point.angle);
+            let [[a, b], [c, d]] = step;
+            known = [
+                a * a * known[0] + 2.0 * a * b * known[1] + b * b * known[2],
+                a * c * known[0] + (a * d + b * c) * known[1] + b * d * known[2],
+                c * c * known[0] + 2.0 * c * d * known[1] + d * d * known[2],
+            ];
+            let variance = [part - known[0], -known[1]];
+            let total = variance[0] + 1.0 - part;
+            ln_determinant += Real::ln(total);
+            let gain = variance.map(|x| x / total);
+            let column = |k: usize| if k == columns { point.residual } else { point.row[k] };
+            for k in 0..=columns {
+                let [value, slope] = state[k];
+                let (value, slope) = (a * value + b * slope, c * value + d * slope);
+                fresh[k] = column(k) - value;
+                state[k] = [value + gain[0] * fresh[k], slope + gain[1] * fresh[k]];
+            }
+            for i in 0..=columns {
+                for j in 0..=i {
+                    sums[i][j] += fresh[i] * fresh[j] / total;
+                }
+            }
+            known[0] += gain[0] * variance[0];
+            known[1] += gain[0] * variance[1];
+            known[2] += gain[1] * variance[1];
+        }
+    }
+    for i in 0..=columns {
+        for j in 0..i {
+            sums[j][i] = sums[i][j];
+        }
+    }
+    // The last row of the root of all sums holds what of the residuals is beyond J.
+    let root = cholesky(&sums);
+    let ln_columns: f64 = (0..columns).map(|k| 2.0 * Real::ln(root[k][k])).sum();
+    let rest = root[columns][columns] * root[columns][columns];
+    let ln = -0.5 * (degrees * Real::ln(rest) + ln_determinant + ln_columns);
+    (ln, rest / degrees)
+}
+
+/// What the state is expected to be after `angle`, per state before.
+fn step(angle: f64, process: Process) -> [[f64; 2]; 2] {
+    if process.smooth {
+        let x = SMOOTH * angle / process.length;
+        let e = Real::exp(-x.min(700.0));
+        [[e * (1.0 + x), e * x], [-e * x, e * (1.0 - x)]]
+    } else {
+        [[Real::exp(-(angle / process.length).min(700.0)), 0.0], [0.0; 2]]
+    }
+}
+
+/// What all lines have in common: a misfit of the model is alike at equal angles from the specular direction.
+pub struct Common {
+    /// All points in order of their offset.
+    merged: Vec<Point>,
+    /// Correlation of residuals of different lines at the same offset, at least 0.
+    pub correlation: f64,
+}
+
+impl Common {
+    /// Of these lines.
+    pub fn new(lines: &[Vec<Point>]) -> Self {
+        let mut merged: Vec<Point> = lines.iter().flatten().cloned().collect();
+        merged.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.line.cmp(&b.line)));
+        merged.iter_mut().for_each(|point| point.angle = point.offset);
+        let near = 0.5 * step_of(lines).unwrap_or(0.0) + 1e-9;
+        let mut sums = [0.0; 3];
+        for (place, a) in merged.iter().enumerate() {
+            let others = merged[place + 1..].iter().take_while(|b| b.offset - a.offset <= near);
+            for b in others.filter(|b| b.line != a.line) {
+                let pairs = [
+                    a.residual * b.residual,
+                    a.residual * a.residual,
+                    b.residual * b.residual,
+                ];
+                sums.iter_mut().zip(pairs).for_each(|(sum, pair)| *sum += pair);
+            }
+        }
+        let correlation = sums[0] / Real::sqrt(sums[1] * sums[2]);
+        Common {
+            merged,
+            correlation: if correlation > LEAST_COMMON { correlation } else { 0.0 },
+        }
+    }
+
+    /// The sandwich of the least-squares fit.
+    pub fn covariance(&self, lines: &[Vec<Point>], process: Process, variance: f64) -> Vec<Vec<f64>> {
+        let own = covariance(lines, process, variance);
+        if self.correlation == 0.0 || process.part == 0.0 {
+            return own;
+        }
+        // The noise of each sample is in no other line.
+        let part = (self.correlation / process.part).min(1.0);
+        let all = covariance(std::slice::from_ref(&self.merged), process, variance);
+        let both = own.iter().zip(&all);
+        both.map(|(own, all)| own.iter().zip(all).map(|(own, all)| own + part * (all - own)).collect())
+            .collect()
+    }
+}
+
+/// The sandwich of the least-squares fit where lines have nothing in common.
+pub fn covariance(lines: &[Vec<Point>], process: Process, variance: f64) -> Vec<Vec<f64>> {
+    let columns = lines.iter().flatten().next().map_or(0, |point| point.row.len());
+    let mut sums = vec![vec![0.0; columns]; columns];
+    // The rows before, by their correlation with the next, and by its change.
+    let mut before = vec![[0.0; 2]; columns];
+    for line in lines {
+        before.fill([0.0; 2]);
+        let mut last: Option<&Point> = None;
+        for point in line {
+            if let Some(last) = last {
+                // The correlation over x is the first row of the step; with a row more it is that of the sum.
+                let [[a, b], [c, d]] = step(point.angle - last.angle, process);
+                for (sum, row) in before.iter_mut().zip(&last.row) {
+                    let [value, slope] = [sum[0] + row, sum[1]];
+                    *sum = [a * value + b * slope, c * value + d * slope];
+                }
+            }
+            last = Some(point);
+            for i in 0..columns {
+                for j in 0..columns {
+                    let crossed = point.row[i] * before[j][0] + before[i][0] * point.row[j];
+                    sums[i][j] += point.row[i] * point.row[j] + process.part * crossed;
+                }
+            }
+        }
+    }
+    sums.iter()
+        .map(|row| row.iter().map(|x| variance * x).collect())
+        .collect()
+}
+
+/// The lower triangle whose product with its transpose is a symmetric matrix without negative eigenvalues; a pivot that rounding takes below 0 is a small one.
+pub fn cholesky(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let count = a.len();
+    let mut root = vec![vec![0.0; count]; count];
+    for i in 0..count {
+        for j in 0..=i {
+            let rest = a[i][j] - (0..j).map(|k| root[i][k] * root[j][k]).sum::<f64>();
+            root[i][j] = if i == j {
+                Real::sqrt(rest.max(f64::EPSILON * a[i][i]).max(f64::MIN_POSITIVE))
+            } else {
+                rest / root[j][j]
+            };
+        }
+    }
+    root
+}

@@ -1,0 +1,280 @@
+//! Errors under correlated residuals: the filter and the sandwich against slow literal algebra, and coverage against the truth of simulated scans.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "oracles may use std's functions; the code under test may not"
+)]
+
+use brdfit::analysis::bootstrap::Noise;
+use brdfit::analysis::misfit::mixture::matched;
+use brdfit::analysis::misfit::process::{Common, Point, Process, covariance, likelihood};
+use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
+use brdfit::engine::{self, FitOptions, Material};
+use brdfit_core::brdf::{DIFFUSE, SURFACE};
+use brdfit_core::geometry::Sample;
+use brdfit_suite::scan::{left_out, scan, shared};
+use brdfit_suite::tolerance::{self, check};
+
+const COLUMNS: usize = 3;
+
+/// The correlation of two residuals that are not the same one.
+fn kernel(process: Process, angle: f64) -> f64 {
+    let x = angle.abs() / process.length;
+    process.part
+        * if process.smooth {
+            let x = 2.146_193_220_620_582_6 * x;
+            (1.0 + x) * (-x).exp()
+        } else {
+            (-x).exp()
+        }
+}
+
+/// The root and the determinant's logarithm of a symmetric matrix, and the solutions of the equations with these right sides.
+fn solved(mut a: Vec<Vec<f64>>, mut right: Vec<Vec<f64>>) -> (f64, Vec<Vec<f64>>) {
+    let mut ln = 0.0;
+    for k in 0..a.len() {
+        ln += a[k][k].ln();
+        for i in 0..a.len() {
+            if i != k {
+                let factor = a[i][k] / a[k][k];
+                let (from, into) = (a[k].clone(), &mut a[i]);
+                into.iter_mut().zip(&from).for_each(|(x, y)| *x -= factor * y);
+                let (from, into) = (right[k].clone(), &mut right[i]);
+                into.iter_mut().zip(&from).for_each(|(x, y)| *x -= factor * y);
+            }
+        }
+    }
+    for k in 0..a.len() {
+        let pivot = a[k][k];
+        right[k].iter_mut().for_each(|x| *x /= pivot);
+    }
+    (ln, right)
+}
+
+fn product(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let column = |row: &Vec<f64>, j: usize| row.iter().zip(b).map(|(x, line)| x * line[j]).sum();
+    let count = b.first().map_or(0, Vec::len);
+    a.iter()
+        .map(|row| (0..count).map(|j| column(row, j)).collect())
+        .collect()
+}
+
+fn turned(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    (0..a[0].len()).map(|j| a.iter().map(|row| row[j]).collect()).collect()
+}
+
+#[test]
+fn filter_and_sandwich_are_those_of_the_whole_matrix() {
+    let mut noise = Noise::new(1, 0);
+    let mut point = |line: usize, k: usize| Point {
+        angle: 0.1 * k as f64 + 0.05 * noise.unit(),
+        offset: 0.1 * k as f64 + 0.03 * noise.unit(),
+        line,
+        residual: noise.normal(),
+        row: (0..COLUMNS).map(|_| noise.normal()).collect(),
+    };
+    let lines: Vec<Vec<Point>> = [14, 1, 9]
+        .iter()
+        .enumerate()
+        .map(|(line, &count)| (0..count).map(|k| point(line, k)).collect())
+        .collect();
+    let all: Vec<&Point> = lines.iter().flatten().collect();
+    let rows: Vec<Vec<f64>> = all.iter().map(|point| point.row.clone()).collect();
+    let degrees = (all.len() - COLUMNS) as f64;
+    let (mut of_ln, mut of_covariance) = (0.0f64, 0.0f64);
+    let mut before = None;
+    for (length, part, smooth) in [
+        (0.3, 0.9, false),
+        (0.3, 0.9, true),
+        (1.0, 0.3, true),
+        (0.02, 0.999, false),
+    ] {
+        let process = Process { length, part, smooth };
+        let matrix = |of: &dyn Fn(&Point, &Point) -> f64| -> Vec<Vec<f64>> {
+            let one = |i: usize, j: usize| if i == j { 1.0 } else { of(all[i], all[j]) };
+            (0..all.len())
+                .map(|i| (0..all.len()).map(|j| one(i, j)).collect())
+                .collect()
+        };
+        let along = |a: &Point, b: &Point| {
+            if a.line == b.line {
+                kernel(process, a.angle - b.angle)
+            } else {
+                0.0
+            }
+        };
+        let v = matrix(&along);
+        let columns: Vec<Vec<f64>> = all
+            .iter()
+            .map(|point| [&point.row[..], &[point.residual]].concat())
+            .collect();
+        let (ln_v, solution) = solved(v.clone(), columns.clone());
+        let normal = product(&turned(&columns), &solution);
+        let j_j: Vec<Vec<f64>> = normal[..COLUMNS].iter().map(|row| row[..COLUMNS].to_vec()).collect();
+        let j_r: Vec<Vec<f64>> = normal[..COLUMNS].iter().map(|row| vec![row[COLUMNS]]).collect();
+        let (ln_j, best) = solved(j_j, j_r.clone());
+        let explained: f64 = best.iter().zip(&j_r).map(|(x, y)| x[0] * y[0]).sum();
+        let rest = normal[COLUMNS][COLUMNS] - explained;
+        let expected = -0.5 * (degrees * rest.ln() + ln_v + ln_j);
+        let (ln, variance) = likelihood(&lines, process, degrees);
+        of_ln = of_ln
+            .max((ln - expected).abs())
+            .max((variance * degrees / rest - 1.0).abs());
+        assert!(before.replace(ln).is_none_or(|before: f64| (before - ln).abs() > 1e-3));
+        // The sandwich: within lines, and with what lines have in common.
+        let mut common = Common::new(&lines);
+        common.correlation = 0.6 * part;
+        let shared = |a: &Point, b: &Point| {
+            let own = if a.line == b.line {
+                0.4 * kernel(process, a.angle - b.angle)
+            } else {
+                0.0
+            };
+            own + 0.6 * kernel(process, a.offset - b.offset)
+        };
+        let pairs = [
+            (covariance(&lines, process, variance), v),
+            (common.covariance(&lines, process, variance), matrix(&shared)),
+        ];
+        for (got, v) in pairs {
+            let meat = product(&turned(&rows), &product(&v, &rows));
+            for (got, exact) in got.iter().flatten().zip(meat.iter().flatten()) {
+                of_covariance = of_covariance.max((got - variance * exact).abs() / variance);
+            }
+        }
+    }
+    check(of_ln, tolerance::RESTRICTED_LIKELIHOOD);
+    check(of_covariance, tolerance::SANDWICH);
+}
+
+#[test]
+fn a_mixture_of_one_is_itself() {
+    let one = matched(&[(1.0, 4.0)], 12.0);
+    assert!(
+        (one.variance - 4.0).abs() < 1e-6 && (one.degrees - 12.0).abs() < 1e-3,
+        "{one:?}"
+    );
+    let wide = matched(&[(0.9, 1.0), (0.1, 25.0)], 100.0);
+    assert!(wide.degrees < 10.0, "{wide:?}");
+}
+
+#[test]
+fn lines_are_what_one_angle_of_incidence_has_in_one_plane() {
+    let at = |theta_i: f64, theta_s: f64, delta_phi: f64| Sample {
+        theta_i,
+        theta_s,
+        delta_phi,
+        brdf: 1.0,
+        weight: 1.0,
+    };
+    let pi = std::f64::consts::PI;
+    let samples = [
+        at(0.5, 0.2, pi),
+        at(0.7, 0.1, pi),
+        at(0.5, 0.4, 0.0),
+        at(0.5, 0.1, pi),
+        Sample {
+            weight: 0.0,
+            ..at(0.5, 0.3, pi)
+        },
+        at(0.5, 0.3, -pi),
+        at(0.7, 0.2, pi),
+    ];
+    let places: Vec<Vec<usize>> = lines::of(&samples)
+        .iter()
+        .map(|line| line.iter().map(|&(place, _)| place).collect())
+        .collect();
+    assert_eq!(places, [vec![2, 3, 0, 5], vec![1, 6]]);
+    // Around a cone every plane has one sample, and the cone is the line.
+    let cone: Vec<_> = (0..20).map(|k| at(0.5, 0.6, 0.1 + 0.1 * f64::from(k))).collect();
+    assert_eq!(lines::of(&cone).len(), 1);
+}
+
+const TRUTH: [f64; 6] = [0.05, 1.0, 0.0, 0.2, 1.5, 0.0];
+
+/// rho_d, rho_s and m of a scan of three angles of incidence, whose ln f has errors of 5 % that are correlated over so many degrees.
+fn measured(length: f64, copy: u64) -> (Vec<Sample<f64>>, FitOptions) {
+    let truth = Material::paper(TRUTH);
+    let mut noise = Noise::new(3, copy);
+    let mut samples = Vec::new();
+    for theta_i in [20.0f64, 45.0, 60.0] {
+        let mut error = noise.normal();
+        for theta_s in (-84..=84).step_by(2) {
+            let kept = if length > 0.0 { (-2.0 / length).exp() } else { 0.0 };
+            error = kept * error + (1.0 - kept * kept).sqrt() * noise.normal();
+            let sample = Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0);
+            let ln_f = truth.ln_f(&sample).unwrap() + 0.05 * error;
+            samples.push(Sample {
+                brdf: ln_f.exp(),
+                ..sample
+            });
+        }
+    }
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    (samples, options)
+}
+
+/// How many of the copies have 95 % intervals that hold the actual rho_d and m, and how many are taken for correlated.
+fn covered(length: f64, copies: u64) -> (u64, u64, [u64; 2]) {
+    let (mut correlated, mut held, mut plain) = (0, 0, [0; 2]);
+    for copy in 0..copies {
+        let (samples, options) = measured(length, copy);
+        let outcome = engine::fit(&samples, &options).unwrap();
+        let known = uncertainty(&samples, &outcome);
+        correlated += u64::from(known.misfit.is_some());
+        if known.misfit.is_none() {
+            assert_eq!(known, outcome.uncertainty);
+        }
+        for (k, place) in [0, 3].into_iter().enumerate() {
+            let error = (outcome.params[place] - TRUTH[place]).abs();
+            held += u64::from(error <= coverage_factor(&known) * known.stderr[place]);
+            let independent = &outcome.uncertainty;
+            plain[k] += u64::from(error <= coverage_factor(independent) * independent.stderr[place]);
+        }
+    }
+    (correlated, held, plain)
+}
+
+#[test]
+fn intervals_hold_the_truth_under_correlated_errors() {
+    let copies = 60;
+    let (correlated, held, plain) = covered(8.0, copies);
+    assert_eq!(correlated, copies);
+    // Of 120 intervals 114 are expected, and independent errors would hold half of it.
+    assert!((108..=119).contains(&held), "{held}");
+    assert!(plain.iter().all(|&held| held < 45), "{plain:?}");
+}
+
+#[test]
+fn independent_errors_stay_as_they_are() {
+    let copies = 60;
+    let (correlated, held, plain) = covered(0.0, copies);
+    assert!(correlated <= 12, "{correlated}");
+    assert!((108..=119).contains(&held), "{held}");
+    assert!(held >= plain.iter().sum());
+}
+
+/// Two runs of one paint on one instrument: apart by many of the errors of independent residuals, and no more than by their own.
+#[test]
+fn runs_of_one_paint_agree_within_their_errors() {
+    let run = |number: u32| shared(&format!("real/rt300s_aeroglaze_z307_run{number}.csv"));
+    if !run(1).exists() || !run(2).exists() {
+        return left_out("runs of one paint", &run(1));
+    }
+    let known = [1, 2].map(|number| {
+        let samples = scan(&run(number));
+        let outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
+        let known = uncertainty(&samples, &outcome);
+        (outcome.params, outcome.uncertainty, known)
+    });
+    let [(a, a_plain, a_known), (b, b_plain, b_known)] = &known;
+    for place in [0, 3] {
+        let apart = (a[place] - b[place]).abs();
+        let expanded = |known: &engine::uncertainty::Uncertainty| coverage_factor(known) * known.stderr[place];
+        assert!(apart < expanded(a_known).hypot(expanded(b_known)), "{place}: {apart}");
+        assert!(apart > expanded(a_plain).hypot(expanded(b_plain)), "{place}: {apart}");
+    }
+}

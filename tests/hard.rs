@@ -1,6 +1,10 @@
 //! Scans on which a search can go wrong: the optimum is found, and nothing that fits ends above what is known.
 
+use std::collections::BTreeSet;
+
+use brdfit::analysis::bootstrap::{Noise, bootstrap, copy};
 use brdfit::analysis::choose::{self, SETS, Wanted, sets};
+use brdfit::analysis::profile::calibrate::thresholds;
 use brdfit::analysis::profile::profiles;
 use brdfit::engine::models::MODELS;
 use brdfit::engine::{self, FitOptions, Values, joint};
@@ -9,7 +13,7 @@ use brdfit_core::search::CANDIDATES;
 use brdfit_suite::hard_scenes::{KINDS, Kind, task};
 use brdfit_suite::missed::{MISSED, ended};
 use brdfit_suite::program::{brdfit, fail, write};
-use brdfit_suite::scan::{data, scan};
+use brdfit_suite::scan::{data, left_out, scan, shared};
 use serde_json::Value;
 
 /// Scans with the least cost known: 2000 mixed starts, and searches of 3000 candidates.
@@ -144,7 +148,9 @@ fn richer_terms_never_cost_more() {
 }
 
 /// Models and those that contain them.
-const NESTED: [(&str, &str); 7] = [
+const NESTED: [(&str, &str); 9] = [
+    ("cook-torrance", "beckmann"),
+    ("walter", "ggx-smith"),
     ("beckmann", "beckmann-own-slope"),
     ("beckmann", "beckmann-second"),
     ("ggx", "ggx-own-slope"),
@@ -184,25 +190,88 @@ fn a_model_that_contains_another_never_ends_above_it() {
             format!("{},{},{:e}\n", degrees[0], degrees[1], sample.brdf)
         });
         let csv = String::from("theta_i,theta_s,brdf\n") + &rows.collect::<String>();
-        let ran = brdfit(
-            &["compare", "-", "--forward", "positive", "--format", "json"],
-            csv.as_bytes(),
-        );
-        assert_eq!(ran.code, 0, "{}", ran.errors);
-        let result: Value = serde_json::from_str(&ran.output).unwrap();
-        let mse2 = |name: &str| {
-            let models = result["models"].as_array().unwrap();
-            let model = models.iter().find(|model| model["model"] == name).unwrap();
-            model["mse2"].as_f64().unwrap()
-        };
-        for (small, large) in NESTED {
-            let (low, high) = (mse2(small), mse2(large));
-            assert!(
-                high <= low * (1.0 + 1e-9),
-                "{kind:?} {k}: {large} {high}, {small} {low}"
-            );
+        assert_nested(&format!("{kind:?} {k}"), "-", csv.as_bytes());
+    }
+}
+
+#[test]
+fn nor_of_measured_scans() {
+    for name in ["nist_ptfe_532nm", "cornell_garnet_red_R", "rt300s_anoblack_ec1_al6061"] {
+        let path = shared(&format!("real/{name}.csv"));
+        if path.exists() {
+            assert_nested(name, &path.display().to_string(), b"");
+        } else {
+            left_out("nested models", &path);
         }
     }
+}
+
+fn assert_nested(what: &str, scan: &str, input: &[u8]) {
+    let models = NESTED.iter().flat_map(|(small, large)| [*small, *large]);
+    let models: BTreeSet<&str> = models.collect();
+    let list = models.into_iter().collect::<Vec<_>>().join(",");
+    let arguments = [
+        "compare",
+        scan,
+        "--models",
+        &list,
+        "--forward",
+        "positive",
+        "--format",
+        "json",
+    ];
+    let ran = brdfit(&arguments, input);
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    let result: Value = serde_json::from_str(&ran.output).unwrap();
+    let mse2 = |name: &str| {
+        let models = result["models"].as_array().unwrap();
+        let model = models.iter().find(|model| model["model"] == name).unwrap();
+        model["mse2"].as_f64().unwrap()
+    };
+    for (small, large) in NESTED {
+        let (low, high) = (mse2(small), mse2(large));
+        assert!(high <= low * (1.0 + 1e-9), "{what}: {large} {high}, {small} {low}");
+    }
+}
+
+/// A copy of the bootstrap is fitted no worse than from the parameters of the scan, whatever its own search finds.
+#[test]
+fn copies_never_end_above_the_fit_they_are_copies_of() {
+    let samples = case("rough044");
+    let best = engine::fit(&samples, &FitOptions::default()).unwrap();
+    let lazy = FitOptions {
+        starts: Some(1),
+        ..FitOptions::default()
+    };
+    let copies = bootstrap(&samples, &lazy, &best, 20).unwrap();
+    for (k, found) in (0..).zip(&copies) {
+        let material = best.material();
+        let copy = copy(&samples, &material, best.uncertainty.scale, &mut Noise::new(0, k));
+        let cost = |start: &Values| engine::descend(&copy, &lazy, &[*start]).unwrap().unwrap().0;
+        let (found, known) = (cost(found), cost(&best.params));
+        assert!(found <= known * (1.0 + 1e-9), "copy {k}: {found} above {known}");
+    }
+    // What is free never costs more than what is held, so no threshold is below 0.
+    for limit in thresholds(&samples, &lazy, 3, &best.params, best.uncertainty.scale, 20).unwrap() {
+        assert!(limit >= 0.0, "{limit}");
+    }
+}
+
+#[test]
+fn more_starts_cost_more_and_the_page_says_how_much() {
+    let file = data("testdata1_sym_seed1.csv").display().to_string();
+    let passes = |more: &[&str]| {
+        let arguments = [&["fit", &file, "--format", "json"], more].concat();
+        let result: Value = serde_json::from_str(&brdfit(&arguments, b"").output).unwrap();
+        let number = |kind: &str| result["evaluations"][kind].as_u64().unwrap();
+        [number("linearize"), number("cost")]
+    };
+    let (usual, more) = (passes(&[]), passes(&["--starts", "2000"]));
+    // A candidate costs at least half a pass.
+    assert!(more[1] > usual[1] + 1000, "{usual:?}, {more:?}");
+    let page = brdfit(&["fit", &file, "--starts", "2000"], b"").output;
+    let line = format!("  passes     {} with derivatives, {} without", more[0], more[1]);
+    assert!(page.contains(&line), "{page}");
 }
 
 #[test]

@@ -13,7 +13,7 @@
 //! The claim is on Eq. 14 with the geometry as [`brdfit_core::geometry::Geometry`] computes it.
 //!
 //! # Order
-//! A box is bounded by single samples (`range`), then by a quadratic below the cost (`taylor`, `quadratic`); both also cut away what has no cost below the target.
+//! A box is bounded by single samples (`range`), by the tangents of ln f (`tangent`), then by a quadratic below the cost (`taylor`, `quadratic`); the first and the last also cut away what has no cost below the target.
 //! What is left is split (`branch`); boxes that share a rectangle of n and kappa are handled together, those with the least bound first.
 //! Rounds have the same tasks on any number of threads, so boxes and results are the same too.
 
@@ -27,6 +27,7 @@ mod range;
 mod reflect;
 mod region;
 mod scene;
+mod tangent;
 mod taylor;
 
 use brdfit_core::brdf::Params;

@@ -6,6 +6,7 @@ use super::cell::Cell;
 use super::range::{self, Reach};
 use super::region::{Part, Region};
 use super::scene::{A, D, MU, PARTS, Scene};
+use super::tangent;
 use super::taylor::{self, Expansion};
 
 /// A rectangle of a and b, and boxes in it.
@@ -185,6 +186,11 @@ fn step(
             if found.is_none_or(|(least, _)| cost < least) {
                 *found = Some((cost, params));
             }
+        }
+        let tangent = tangent::bound(scene, cell, region, reach, &expansion.centre, &expansion.half, target);
+        region.bound = region.bound.max(tangent);
+        if tangent >= target {
+            return Step::Excluded;
         }
         if expansion.lost > HOPELESS * (target + expansion.cost) {
             if narrower {

@@ -87,7 +87,7 @@ impl Quadratic {
     }
 
     /// Near the least value in a box, by descent along one coordinate after the other.
-    fn descend(&self, mut z: [f64; D], lo: [f64; D], hi: [f64; D]) -> [f64; D] {
+    pub fn descend(&self, mut z: [f64; D], lo: [f64; D], hi: [f64; D]) -> [f64; D] {
         let mut slope = self.slope(&z);
         for _ in 0..SWEEPS {
             let mut moved = 0.0f64;

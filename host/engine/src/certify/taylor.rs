@@ -42,19 +42,19 @@ pub(crate) struct Expansion {
 const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 
 /// The exponents of one sample's parts about the centre.
-struct Exponents {
-    at: [f64; PARTS],
-    slope: [[f64; D]; PARTS],
+pub(crate) struct Exponents {
+    pub at: [f64; PARTS],
+    pub slope: [[f64; D]; PARTS],
     /// Second derivatives of phi by aa, ab and bb.
-    second: [[f64; 3]; PARTS],
+    pub second: [[f64; 3]; PARTS],
     /// The largest of d' (second derivatives) d.
-    bent: [f64; PARTS],
+    pub bent: [f64; PARTS],
     /// What else `at + slope d + second d d / 2` may be wrong by.
-    error: [f64; PARTS],
+    pub error: [f64; PARTS],
     /// The same and `bent`, as far as they grow with a and with b.
-    unknown: [[f64; 2]; PARTS],
+    pub unknown: [[f64; 2]; PARTS],
     /// Sum of absolute values, for rounding.
-    size: [f64; PARTS],
+    pub size: [f64; PARTS],
 }
 
 /// Of a box with at least one bright part; `reach` is that of a box that contains it.
@@ -92,7 +92,7 @@ pub(crate) fn expand(scene: &Scene, cell: &Cell, region: &Region, reach: &[Reach
     out
 }
 
-fn exponents(cell: &Cell, row: &Row, parts: &[Part; PARTS], centre: &[f64; D], h: &[f64; D]) -> Exponents {
+pub(crate) fn exponents(cell: &Cell, row: &Row, parts: &[Part; PARTS], centre: &[f64; D], h: &[f64; D]) -> Exponents {
     let mut out = Exponents {
         at: [ABSENT; PARTS],
         slope: [[0.0; D]; PARTS],
@@ -164,7 +164,7 @@ fn exp_most(x: f64, most: f64) -> f64 {
 }
 
 /// ln(1 + e^x), rounded up.
-fn ln_1p_exp(x: f64) -> f64 {
+pub(crate) fn ln_1p_exp(x: f64) -> f64 {
     if x > 30.0 {
         x + 1e-12 * x
     } else {

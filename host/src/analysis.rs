@@ -16,6 +16,7 @@ pub mod profile;
 pub mod proof;
 mod quadrature;
 pub mod reflectance;
+pub mod repeats;
 pub mod stability;
 pub mod undetermined;
 pub mod unseen;

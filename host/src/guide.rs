@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`reading`] | which files are read, and what their numbers are taken for |
 //! | [`models`] | models, terms, bounds, and several scans together |
+//! | [`instrument`] | priors, offset, aperture, calibration, energy, outliers, repeats |
 //! | [`uncertainty`] | what a scan tells of the parameters |
 //! | [`certificates`] | a proof that no parameters fit better |
 //! | [`results`] | reports, JSON, the shell, exit codes |
@@ -29,6 +30,8 @@ pub mod exports {}
 pub mod firmware {}
 #[doc = include_str!("guide/how_it_works.md")]
 pub mod how_it_works {}
+#[doc = include_str!("guide/instrument.md")]
+pub mod instrument {}
 #[doc = include_str!("guide/lsqcurvefit.md")]
 pub mod lsqcurvefit {}
 #[doc = include_str!("guide/models.md")]

@@ -255,6 +255,13 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
             .in_file(&measurement.file)
             .at_line(measurement.lines[index])
             .help("take f64, or leave out the row"),
+        FitError::OutOfPlane(index) => {
+            Error::new("this direction is out of the plane of incidence, where there is no offset of theta_s to fit")
+                .in_file(&measurement.file)
+                .at_line(measurement.lines[index])
+                .help("leave out --fit-offset, or the rows out of plane")
+        }
+        FitError::Limit => plain.help("widen --bounds, or leave out --conserve-energy"),
         FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
         FitError::NoProof(_) => plain.help("only --model beckmann has one"),
         _ => plain,

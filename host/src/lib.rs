@@ -17,7 +17,7 @@
 //! | [`page`] | the HTML page on fitted scans |
 //! | [`export`] | a fitted model for other programs |
 //! | [`until`](mod@until) | until when a thread's searches are wanted |
-//! | [`options`] | the options that several commands have |
+//! | [`options`], [`instrument`] | the options that several commands have |
 //! | `commands` | one file or folder a command |
 //! | `cli` | the command line, which strings the commands together |
 //!
@@ -37,6 +37,7 @@ pub mod error;
 pub mod export;
 pub mod guide;
 pub mod input;
+pub mod instrument;
 #[cfg(feature = "cli")]
 pub mod interrupt;
 pub mod names;

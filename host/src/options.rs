@@ -9,6 +9,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::analysis::choose::{Wanted, sets};
 use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
+use crate::instrument::InstrumentArguments;
 #[cfg(feature = "cli")]
 use crate::names::{METHODS, PRECISIONS};
 use crate::parameters::{AUTO, Range, apply, check, models, names_of, parameter};
@@ -46,6 +47,9 @@ pub struct SearchArguments {
     /// Leaves out samples far from the fit (6 robust standard deviations of ln f), and says how many
     #[cfg_attr(feature = "cli", arg(long))]
     pub robust: bool,
+    /// What is known beside the samples
+    #[cfg_attr(feature = "cli", command(flatten))]
+    pub instrument: InstrumentArguments,
     /// Number type of the computation
     #[cfg_attr(feature = "cli", arg(long, value_name = "PRECISION", value_parser = one_of(&PRECISIONS), default_value = PRECISIONS[0].0))]
     pub precision: Precision,
@@ -65,6 +69,7 @@ impl Default for SearchArguments {
             bounds: Vec::new(),
             fix: Vec::new(),
             robust: false,
+            instrument: InstrumentArguments::default(),
             precision: Precision::F64,
             threads: None,
         }
@@ -92,7 +97,7 @@ impl SearchArguments {
     /// Terms or bounds that make no sense.
     pub fn wanted(&self) -> Result<Wanted, Error> {
         let models = models(&self.model)?;
-        for text in self.bounds.iter().chain(&self.fix) {
+        for text in self.bounds.iter().chain(&self.fix).chain(&self.instrument.prior) {
             known(&models, text)?;
         }
         let each = models.iter().map(|model| self.of_model(model));
@@ -121,6 +126,7 @@ impl SearchArguments {
         let fixed = self.fix.iter().filter(has).map(|text| fixed(model, text, "--fix"));
         let ranges: Vec<Range> = ranges.chain(fixed).collect::<Result<_, _>>()?;
         apply(&ranges, &mut options)?;
+        self.instrument.apply(&mut options)?;
         Ok(options)
     }
 

@@ -1,5 +1,6 @@
 //! What is written of a fitted scan: pages for people, JSON and tables for programs.
 
+pub mod beside;
 pub mod cell;
 pub mod columns;
 mod csv;

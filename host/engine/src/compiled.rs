@@ -10,6 +10,8 @@ use brdfit_core::real::Real;
 use brdfit_core::residuals::{Residuals, ln_f, observe};
 use brdfit_core::search::Scene;
 
+use crate::instrument::averaged::Averaged;
+use crate::instrument::setup::Setup;
 use crate::options::Precision;
 use crate::simd::{FastScan, Simd};
 use crate::trace::{self, Trace};
@@ -25,8 +27,8 @@ type Joint = Result<joint::Fitted, (usize, FitError)>;
 #[derive(Clone, Copy, Debug)]
 pub struct Compiled {
     pub(crate) terms: u8,
-    pub(crate) fit: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Outcome, FitError>,
-    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &[Values]) -> Result<Found, FitError>,
+    pub(crate) fit: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Outcome, FitError>,
+    pub(crate) descend: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Found, FitError>,
     pub(crate) trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
 }
 
@@ -35,6 +37,9 @@ pub struct Compiled {
 #[derive(Clone, Copy, Debug)]
 pub struct Whole {
     pub(crate) compiled: Compiled,
+    /// A fit, and one from given values, through an aperture.
+    pub(crate) through: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Outcome, FitError>,
+    pub(crate) through_from: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Found, FitError>,
     pub(crate) joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Joint,
     pub(crate) ln_f: fn(&[f64], &Sample<f64>) -> Option<f64>,
     pub(crate) gradient: fn(&[f64], &Sample<f64>) -> Found,
@@ -66,6 +71,8 @@ pub(crate) const fn compile<M: Both<P, C>, const P: usize, const C: usize, const
 pub(crate) const fn whole<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Whole {
     Whole {
         compiled: compile::<M, P, C, VECTORS>(terms),
+        through: through::<M, P, C, VECTORS>,
+        through_from: through_from::<M, P, C, VECTORS>,
         joint: joint::<M, P, C, VECTORS>,
         ln_f: value::<M, P, C>,
         gradient: gradient::<M, P, C>,
@@ -113,6 +120,7 @@ fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
 fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
+    setup: &Setup,
     known: &[Values],
 ) -> Result<Outcome, FitError> {
     search::enough(samples, options)?;
@@ -120,11 +128,11 @@ fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     let exact = blocks_of::<f64, M, P, C>(samples)?;
     let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
     match options.precision {
-        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options, known),
+        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options, setup, known),
         Precision::F32 => {
             let blocks = blocks_of::<f32, M, P, C>(samples)?;
             let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
-            search::run::<f32, P>(&scene, &exact, own, samples, options, known)
+            search::run::<f32, P>(&scene, &exact, own, samples, options, setup, known)
         }
     }
 }
@@ -132,12 +140,40 @@ fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
 fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
+    setup: &Setup,
     starts: &[Values],
 ) -> Result<Found, FitError> {
     let blocks = blocks_of::<f64, M, P, C>(samples)?;
     let scene = scene::<f64, M, P, C, VECTORS>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    search::descend_from::<P>(&scene, own, options, starts)
+    search::descend_from::<P>(&scene, own, samples, options, setup, starts)
+}
+
+fn through<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    setup: &Setup,
+    known: &[Values],
+) -> Result<Outcome, FitError> {
+    search::enough(samples, options)?;
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    let point = blocks_of::<f64, M, P, C>(samples)?;
+    let point = scene::<f64, M, P, C, VECTORS>(&point, options.simd);
+    let seen = Averaged::<M, P, C>::new(&point, samples, options.instrument.aperture)?;
+    search::run::<f64, P>(&seen, &seen, own, samples, options, setup, known)
+}
+
+fn through_from<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    setup: &Setup,
+    starts: &[Values],
+) -> Result<Found, FitError> {
+    let own = &<M as Model<f64, P, C>>::PARAMETERS;
+    let point = blocks_of::<f64, M, P, C>(samples)?;
+    let point = scene::<f64, M, P, C, VECTORS>(&point, options.simd);
+    let seen = Averaged::<M, P, C>::new(&point, samples, options.instrument.aperture)?;
+    search::descend_from::<P>(&seen, own, samples, options, setup, starts)
 }
 
 fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -170,7 +206,21 @@ fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
         .iter()
         .map(|blocks| scene::<f64, M, P, C, VECTORS>(blocks, options.simd))
         .collect();
-    let scans: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
+    let points: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
+    let aperture = options.instrument.aperture;
+    let each = points.iter().zip(all).enumerate();
+    let seen = each.map(|(place, (point, samples))| {
+        Averaged::<M, P, C>::new(*point, samples, aperture).map_err(|error| (place, error))
+    });
+    let seen: Vec<_> = if aperture > 0.0 {
+        seen.collect::<Result<_, _>>()?
+    } else {
+        Vec::new()
+    };
+    let scans: Vec<&Kernel<f64, P>> = match seen.is_empty() {
+        true => points,
+        false => seen.iter().map(|scan| scan as &Kernel<f64, P>).collect(),
+    };
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
     joint::run::<P>(&scans, own, shared, options, all)
 }

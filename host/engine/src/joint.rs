@@ -2,13 +2,15 @@
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::joint::Joint;
-use brdfit_core::lm::{self, Bounds, Fit, Options};
+use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::model::Parameter;
 use brdfit_core::search::{Found, search, search_from};
 use brdfit_core::uncertainty::Uncertainty;
 use rayon::prelude::*;
 
 use crate::compiled::Kernel;
+use crate::instrument::beside::{Beside, Rows};
+use crate::instrument::setup::{self, Setup};
 use crate::layout::Layout;
 use crate::search::single;
 use crate::until::Watched;
@@ -27,8 +29,10 @@ pub struct Fitted {
     pub scans: Vec<Values>,
     /// Their standard errors (none on a bound, or if undetermined: the error is larger than the parameter, or for kappa than 1).
     pub errors: Vec<Vec<Option<f64>>>,
-    /// Sum of squared residuals of ln f over all scans.
+    /// Sum of squared residuals of ln f over all scans, and of priors.
     pub cost: f64,
+    /// The part of it that is that of the samples.
+    pub of_samples: f64,
     /// The same of fits of each scan on its own.
     pub separate: f64,
     /// Samples of all scans.
@@ -41,19 +45,28 @@ pub struct Fitted {
 ///
 /// With the shared parameters held, the scans have nothing to do with each other: so each of them is searched with these held where a minimum of any scan has them, and where the best joint fit so far has them, until that leads no lower.
 /// `shared` tells of each of the model's parameters whether it is the same in all scans.
+/// Priors of shared parameters count once, those of others for each scan; offsets are not fitted.
 ///
 /// # Errors
-/// The place of the scan that cannot be fitted, and why; [`FitError::TooFew`] of all samples comes with the number of scans.
+/// The place of the scan that cannot be fitted, and why; [`FitError::TooFew`] and [`FitError::Limit`] of all scans together come with the number of scans.
 pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
-    let (model, mut options) = (options.model, *options);
-    model.hold(&mut options);
+    let together = |error| (all.len(), error);
+    let mut options = options.model.whole_of(options).map_err(together)?;
+    options.instrument.offsets = None;
+    let (options, _) = setup::aimed(&options).map_err(together)?;
     let (both, own): (Vec<usize>, Vec<usize>) = options.free().partition(|&place| shared[place]);
     let parameters = both.len() + all.len() * own.len();
-    let samples = counted(all);
-    if samples < parameters {
-        return Err((all.len(), FitError::TooFew(samples, parameters)));
+    let known = counted(all) + prior_rows(all.len(), shared, &options);
+    if known < parameters {
+        return Err(together(FitError::TooFew(known, parameters)));
     }
-    (model.whole.joint)(all, shared, &options)
+    (options.model.whole.joint)(all, shared, &options)
+}
+
+/// Priors, each of a shared parameter once and of another for each scan.
+fn prior_rows(scans: usize, shared: &[bool], options: &FitOptions) -> usize {
+    let counts = |place: usize| if shared[place] { 1 } else { scans };
+    options.with_prior().map(counts).sum()
 }
 
 /// Coordinates at most, with every parameter of the largest model each scan's own.
@@ -70,29 +83,60 @@ pub(crate) fn run<const P: usize>(
     let watched: Vec<_> = scans.iter().map(|&scene| Watched { scene, until }).collect();
     let scans: &[&Kernel<f64, P>] = &watched.iter().map(|scan| scan as _).collect::<Vec<_>>();
     let layout = Layout::new(own, options.model);
-    let one = layout.bounds::<f64>(options);
-    let lm = Options::default();
-    let separate: Vec<Found<f64, P>> = scans
-        .par_iter()
-        .map(|scan| search(single(*scan), &one, options.seed, options.starts(), &lm))
-        .collect();
-    let is_shared: [bool; P] = layout.places.map(|place| shared[place]);
-    let problem = Joint::new(scans, is_shared);
-    let bounds = problem.bounds::<f64, COORDINATES>(&one);
-    let found = Together {
+    let scene = Scene {
         scans,
-        is_shared,
-        one,
-        bounds,
-        separate: &separate,
+        layout: &layout,
+        shared,
         options,
+        all,
     };
-    let best = found.search(&problem);
+    let is_shared: [bool; P] = layout.places.map(|place| shared[place]);
+    let mut setup = Setup {
+        sigma: options.instrument.sigma.unwrap_or(1.0),
+        ..Setup::default()
+    };
+    for place in (0..shared.len()).filter(|&place| shared[place]) {
+        setup.share[place] = (1.0 / scans.len() as f64).sqrt();
+    }
+    let samples = counted(all);
+    let rows = samples + prior_rows(all.len(), shared, options);
+    let problem = Joint::new(scans, is_shared);
+    let bounds = problem.bounds::<f64, COORDINATES>(&layout.bounds(options));
+    let free = (0..COORDINATES).filter(|&k| bounds.lower[k] < bounds.upper[k]).count();
+    let mut found = scene.search(&setup);
+    if options.prior_count() > 0 && options.instrument.sigma.is_none() {
+        setup.settle(
+            |setup, again| {
+                if again {
+                    found = scene.search(setup);
+                } else {
+                    found.best = scene.descend(setup, found.best.x);
+                }
+                scene.costs(setup, &found.best.x)[0]
+            },
+            rows.saturating_sub(free),
+        );
+    }
+    if options.instrument.limit.is_some() && !until.is_over() {
+        let [of_samples, priors, _] = scene.costs(&setup, &found.best.x);
+        let kept = setup.wall(of_samples + priors, |setup| {
+            if setup.steep > 0.0 {
+                found = scene.search(setup);
+            }
+            scene.above(&found.best.x)
+        });
+        if !kept {
+            return Err((all.len(), FitError::Limit));
+        }
+    }
     if until.is_over() {
         return Err((all.len(), FitError::Interrupted));
     }
-    let samples = counted(all);
-    let uncertainty = Uncertainty::new(&best.at, &best.x, &bounds, samples);
+    let best = &found.best;
+    let [_, priors, limit] = scene.costs(&setup, &best.x);
+    let mut at = best.at;
+    at.cost -= limit;
+    let uncertainty = Uncertainty::new(&at, &best.x, &bounds, rows);
     let error = |s: usize, k: usize| {
         let place = problem.place(s, k);
         let value = best.x[place];
@@ -102,7 +146,12 @@ pub(crate) fn run<const P: usize>(
         let value = layout.values(&x)[layout.places[k]];
         // kappa may be 0 where it is determined.
         let size = if own[k].is_squared() { value.max(1.0) } else { value };
-        (free && error <= size).then_some(error)
+        let calibration = if own[k].is_weight() {
+            options.instrument.scale_uncertainty * value
+        } else {
+            0.0
+        };
+        (free && error <= size).then_some(error.hypot(calibration))
     };
     let errors = |s: usize| {
         let places = 0..options.model.parameters.len();
@@ -116,13 +165,121 @@ pub(crate) fn run<const P: usize>(
             .map(|s| layout.values(&problem.of(&best.x, s)))
             .collect(),
         errors: (0..scans.len()).map(errors).collect(),
-        cost: best.at.cost,
-        separate: separate.iter().map(|found| found.best.at.cost).sum(),
+        cost: at.cost,
+        of_samples: at.cost - priors,
+        separate: found.separate,
         samples,
-        parameters: (0..problem.coordinates())
-            .filter(|&k| bounds.lower[k] < bounds.upper[k])
-            .count(),
+        parameters: free,
     })
+}
+
+/// All scans with what stands beside them.
+struct Scene<'a, const P: usize> {
+    scans: &'a [&'a Kernel<'a, f64, P>],
+    layout: &'a Layout<'a, P>,
+    shared: &'a [bool],
+    options: &'a FitOptions,
+    all: &'a [&'a [Sample<f64>]],
+}
+
+/// The best joint fit.
+struct Best {
+    best: Fit<f64, COORDINATES>,
+    /// Sum of squared residuals of the samples, each scan on its own.
+    separate: f64,
+}
+
+impl<const P: usize> Scene<'_, P> {
+    fn is_shared(&self) -> [bool; P] {
+        self.layout.places.map(|place| self.shared[place])
+    }
+
+    /// The residuals beside each scan.
+    fn rows(&self, setup: &Setup) -> Vec<Rows<'_, P>> {
+        let each = self.all.iter();
+        each.map(|samples| Rows::new(self.layout, self.options, setup, samples))
+            .collect()
+    }
+
+    /// Does `with` with the scans and what stands beside them.
+    fn with<T>(&self, setup: &Setup, with: impl FnOnce(&[&Kernel<f64, P>], &[Rows<P>]) -> T) -> T {
+        let rows = self.rows(setup);
+        let beside: Vec<Beside<f64, P>> = self
+            .scans
+            .iter()
+            .zip(&rows)
+            .map(|(scene, rows)| Beside { scene: *scene, rows })
+            .collect();
+        let pairs = self.scans.iter().zip(&beside);
+        let kernels: Vec<&Kernel<f64, P>> = pairs
+            .map(|(scan, beside)| {
+                if beside.rows.is_empty() {
+                    *scan
+                } else {
+                    beside as &Kernel<f64, P>
+                }
+            })
+            .collect();
+        with(&kernels, &rows)
+    }
+
+    fn search(&self, setup: &Setup) -> Best {
+        let lm = Options::default();
+        let one = self.layout.bounds::<f64>(self.options);
+        self.with(setup, |scans, rows| {
+            let separate: Vec<Found<f64, P>> = scans
+                .par_iter()
+                .map(|scan| search(single(*scan), &one, self.options.seed, self.options.starts(), &lm))
+                .collect();
+            let problem = Joint::new(scans, self.is_shared());
+            let together = Together {
+                scans,
+                is_shared: self.is_shared(),
+                one,
+                bounds: problem.bounds::<f64, COORDINATES>(&one),
+                separate: &separate,
+                options: self.options,
+            };
+            let beside = separate.iter().zip(rows).map(|(found, rows)| {
+                let (priors, limit) = rows.costs(&found.best.x);
+                found.best.at.cost - priors - limit
+            });
+            Best {
+                best: together.search(&problem),
+                separate: beside.sum(),
+            }
+        })
+    }
+
+    fn descend(&self, setup: &Setup, x: [f64; COORDINATES]) -> Fit<f64, COORDINATES> {
+        self.with(setup, |scans, _| {
+            let problem = Joint::new(scans, self.is_shared());
+            let bounds = problem.bounds::<f64, COORDINATES>(&self.layout.bounds(self.options));
+            lm::fit(&problem, &bounds, x, &Options::default())
+        })
+    }
+
+    /// Sum of squared residuals of the samples, of priors, and of what is above its limit.
+    fn costs(&self, setup: &Setup, x: &[f64; COORDINATES]) -> [f64; 3] {
+        let problem = Joint::new(self.scans, self.is_shared());
+        let mut sums = [problem.cost(x), 0.0, 0.0];
+        for (s, rows) in self.rows(setup).iter().enumerate() {
+            let (priors, limit) = rows.costs(&problem.of(x, s));
+            sums[1] += priors;
+            sums[2] += limit;
+        }
+        sums
+    }
+
+    /// Is what is limited above 1 in any scan?
+    fn above(&self, x: &[f64; COORDINATES]) -> bool {
+        let problem = Joint::new(self.scans, self.is_shared());
+        let mut each = self.all.iter().enumerate();
+        each.any(|(s, samples)| {
+            let values = self.layout.values(&problem.of(x, s));
+            setup::is_above(self.options, values, samples)
+        })
+    }
 }
 
 /// Samples that count.

@@ -15,6 +15,7 @@ mod values;
 
 pub mod certify;
 pub mod clock;
+pub mod instrument;
 pub mod joint;
 pub mod models;
 pub mod robust;
@@ -24,6 +25,7 @@ pub mod uncertainty;
 pub mod until;
 
 pub use compiled::{Both, Kernel, blocks, blocks_of};
+pub use instrument::{Instrument, Limit, Offset, Prior, View};
 pub use material::Material;
 pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};

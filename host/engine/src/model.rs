@@ -163,16 +163,23 @@ impl Model {
 
     /// What is compiled of the terms of `options`, and the options for it: what no compiled set leaves out is held.
     pub(crate) fn compiled(&self, options: &FitOptions) -> Result<(&Compiled, FitOptions), FitError> {
+        let whole = self.whole_of(options)?;
+        if let Some(set) = self.sets.iter().find(|set| set.terms == whole.terms) {
+            let terms = whole.terms;
+            return Ok((set, FitOptions { terms, ..*options }));
+        }
+        Ok((&self.whole.compiled, whole))
+    }
+
+    /// The options for the whole model: what their terms leave out is held.
+    pub(crate) fn whole_of(&self, options: &FitOptions) -> Result<FitOptions, FitError> {
         let (terms, mut options) = (options.terms & self.terms, *options);
         if self.terms != 0 && terms & (DIFFUSE | SURFACE | VOLUME) == 0 {
             return Err(FitError::Terms(options.terms));
         }
         options.terms = terms;
-        if let Some(set) = self.sets.iter().find(|set| set.terms == terms) {
-            return Ok((set, options));
-        }
         self.hold(&mut options);
-        Ok((&self.whole.compiled, options))
+        Ok(options)
     }
 
     /// Holds what the terms of `options` leave out at its value of absence.

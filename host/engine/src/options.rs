@@ -5,7 +5,7 @@ use brdfit_core::search::{CANDIDATES, PAPER_STARTS};
 
 use crate::simd::Simd;
 use crate::until::Until;
-use crate::{Model, Values};
+use crate::{Instrument, Model, Outcome, Values};
 
 /// How the global optimum is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,8 @@ pub struct FitOptions {
     pub precision: Precision,
     /// Leave out samples far from the fit ([`crate::robust`]).
     pub robust: bool,
+    /// What is known beside the samples; the aperture takes double precision, whatever the number type.
+    pub instrument: Instrument,
     /// The vector instructions; they change speed and no bit.
     pub simd: Simd,
     /// Until when the search is wanted; this changes no bit either.
@@ -71,6 +73,7 @@ impl FitOptions {
             upper: model.upper(),
             precision: Precision::F64,
             robust: false,
+            instrument: Instrument::default(),
             simd: Simd::best(),
             until: Until::default(),
         }
@@ -84,6 +87,29 @@ impl FitOptions {
     /// Those of them that equal bounds do not hold.
     pub fn free(&self) -> impl Iterator<Item = usize> + '_ {
         self.present().filter(|&place| self.lower[place] < self.upper[place])
+    }
+
+    /// Those of them that have a prior.
+    pub fn with_prior(&self) -> impl Iterator<Item = usize> + '_ {
+        self.free().filter(|&place| self.instrument.priors[place].is_some())
+    }
+
+    /// Number of priors that count.
+    pub(crate) fn prior_count(&self) -> usize {
+        self.with_prior().count()
+    }
+
+    /// For further fits of the samples that `outcome` is of: without outliers to look for, with priors that weigh as they did there, and with offsets near the one that was found.
+    pub fn settled(&self, outcome: &Outcome) -> Self {
+        /// Radians (1.15 degrees).
+        const NEAR: f64 = 0.02;
+        let mut options = FitOptions { robust: false, ..*self };
+        options.instrument.sigma = outcome.sigma.or(self.instrument.sigma);
+        if let (Some((least, most)), Some(offset)) = (self.instrument.offsets, outcome.offset) {
+            let near = (offset.value - NEAR, offset.value + NEAR);
+            options.instrument.offsets = Some((least.max(near.0), most.min(near.1)));
+        }
+        options
     }
 
     /// The number of starts or candidates that will be used.

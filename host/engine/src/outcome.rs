@@ -6,7 +6,7 @@ use brdfit_core::search::Evaluations;
 
 use crate::robust::Robust;
 use crate::uncertainty::Uncertainty;
-use crate::{Material, Model, Values};
+use crate::{Material, Model, Offset, Values, View};
 
 /// One distinct minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +30,11 @@ pub struct Outcome {
     pub terms: u8,
     /// Number of samples.
     pub samples: usize,
-    /// Sum of squared residuals of ln f.
+    /// Sum of squared residuals: of ln f over the samples, and of priors.
     pub cost: f64,
     /// Eq. 17.
     pub mse2: f64,
-    /// Root of the mean squared residual of ln f.
+    /// Root of the mean squared residual of ln f over the samples.
     pub rms_ln: f64,
     /// The best parameters.
     pub params: Values,
@@ -50,6 +50,14 @@ pub struct Outcome {
     pub evaluations: Evaluations,
     /// What a robust fit left out; all else here is of the other samples.
     pub robust: Option<Robust>,
+    /// The part of the cost that is that of priors.
+    pub prior_cost: f64,
+    /// The standard deviation of ln f by which priors were weighed, if there are any.
+    pub sigma: Option<f64>,
+    /// Half-angle of the aperture that the model was seen through, radians.
+    pub aperture: f64,
+    /// The offset of theta_s that was fitted.
+    pub offset: Option<Offset>,
     /// What the scan tells about the parameters; computed in `f64` whatever the number type of the fit.
     pub uncertainty: Uncertainty,
 }
@@ -62,6 +70,10 @@ pub enum FitError {
     Sample(usize, SampleError),
     /// Fewer samples than parameters: how many of each.
     TooFew(usize, usize),
+    /// The sample of this index is out of the plane of incidence, or so near to the horizon that an offset moves it below.
+    OutOfPlane(usize),
+    /// No parameters within the bounds keep what is limited at 1 or below.
+    Limit,
     /// No compiled set has these terms.
     Terms(u8),
     /// There is no proof of the optimum for the model of this name.
@@ -84,6 +96,15 @@ impl Outcome {
         }
     }
 
+    /// The best fit as the instrument sees it.
+    pub fn view(&self) -> View {
+        View {
+            material: self.material(),
+            aperture: self.aperture,
+            offset: self.offset.map_or(0.0, |offset| offset.value),
+        }
+    }
+
     /// The value of the parameter of this name, if the model has it.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.model.value(&self.params, name)
@@ -97,6 +118,12 @@ impl std::fmt::Display for FitError {
             FitError::TooFew(samples, parameters) => {
                 write!(f, "{samples} samples cannot determine {parameters} parameters")
             }
+            FitError::OutOfPlane(index) => write!(
+                f,
+                "sample {} is out of the plane of incidence, where there is no offset of theta_s to fit",
+                index + 1
+            ),
+            FitError::Limit => f.write_str("no parameters within the bounds reflect less light than arrives"),
             FitError::NoProof(model) => write!(f, "there is no proof of the optimum for the model {model}"),
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
             FitError::Interrupted => f.write_str("interrupted"),

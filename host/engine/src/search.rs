@@ -8,11 +8,15 @@ use brdfit_core::search::{self, Found, Scene};
 use rayon::prelude::*;
 
 use crate::compiled::Kernel;
+use crate::instrument::beside::{Beside, Rows};
+use crate::instrument::offset::Nuisance;
+use crate::instrument::settled::Settled;
+use crate::instrument::setup::{self, Setup};
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
 use crate::outcome::{FitError, Minimum, Outcome};
 use crate::until::Watched;
-use crate::{Values, robust, uncertainty};
+use crate::{Material, Values, View, robust, uncertainty};
 
 /// Fits one scan; threads of the current rayon pool share the starts of the `paper` method, and change no bit.
 ///
@@ -27,15 +31,13 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, Fit
 /// # Errors
 /// [`FitError`].
 pub fn fit_from(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
-    let plain = |samples: &[Sample<f64>], options: &FitOptions| {
-        let (compiled, options) = options.model.compiled(options)?;
-        (compiled.fit)(samples, &options, known)
-    };
     if options.robust {
-        robust::fit(samples, options, plain)
-    } else {
-        plain(samples, options)
+        return robust::fit(samples, options, known);
     }
+    if options.instrument.is_plain() {
+        return setup::run(samples, options, &Setup::default(), known).map(|outcome| outcome.calibrated(options));
+    }
+    setup::fit(samples, options, known).map(|outcome| outcome.calibrated(options))
 }
 
 /// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost.
@@ -47,14 +49,13 @@ pub fn descend(
     options: &FitOptions,
     starts: &[Values],
 ) -> Result<Option<(f64, Values)>, FitError> {
-    let (compiled, options) = options.model.compiled(options)?;
-    (compiled.descend)(samples, &options, starts)
+    setup::descend(samples, options, starts)
 }
 
-/// Refuses fewer samples than free parameters.
+/// Refuses fewer samples and priors than free parameters.
 pub(crate) fn enough(samples: &[Sample<f64>], options: &FitOptions) -> Result<(), FitError> {
     let free = options.free().count();
-    if samples.len() < free {
+    if samples.len() + options.prior_count() < free {
         return Err(FitError::TooFew(samples.len(), free));
     }
     Ok(())
@@ -63,13 +64,17 @@ pub(crate) fn enough(samples: &[Sample<f64>], options: &FitOptions) -> Result<()
 pub(crate) fn descend_from<const P: usize>(
     scene: &Kernel<f64, P>,
     own: &[Parameter; P],
+    samples: &[Sample<f64>],
     options: &FitOptions,
+    setup: &Setup,
     starts: &[Values],
 ) -> Result<Option<(f64, Values)>, FitError> {
     let layout = Layout::new(own, options.model);
     let bounds = layout.bounds::<f64>(options);
+    let rows = Rows::new(&layout, options, setup, samples);
+    let beside = Beside { scene, rows: &rows };
     let scene = &Watched {
-        scene,
+        scene: if rows.is_empty() { scene } else { &beside },
         until: options.until,
     };
     let ends = starts
@@ -80,7 +85,7 @@ pub(crate) fn descend_from<const P: usize>(
     if options.until.is_over() {
         return Err(FitError::Interrupted);
     }
-    Ok(best.map(|best| (best.at.cost, layout.values(&best.x))))
+    Ok(best.map(|best| (best.at.cost - rows.costs(&best.x).1, layout.values(&best.x))))
 }
 
 /// A scene for one thread: searches are compiled for this type alone.
@@ -95,11 +100,14 @@ pub(crate) fn run<R: Real, const P: usize>(
     own: &[Parameter; P],
     samples: &[Sample<f64>],
     options: &FitOptions,
+    setup: &Setup,
     known: &[Values],
 ) -> Result<Outcome, FitError> {
     let layout = Layout::new(own, options.model);
+    let rows = Rows::new(&layout, options, setup, samples);
+    let beside = Beside { scene, rows: &rows };
     let scene = &Watched {
-        scene,
+        scene: if rows.is_empty() { scene } else { &beside },
         until: options.until,
     };
     let bounds: Bounds<R, P> = layout.bounds(options);
@@ -143,6 +151,41 @@ pub(crate) fn run<R: Real, const P: usize>(
         lower < upper && (best.x[*k] == lower || best.x[*k] == upper)
     };
     let counted = samples.iter().filter(|sample| sample.weight != 0.0).count();
+    let x64 = best.x.map(R::f64);
+    let (priors, limit) = rows.costs(&x64);
+    let cost = best.at.cost.f64() - limit;
+    let view = View {
+        material: Material {
+            model: options.model,
+            values: layout.values(&best.x),
+        },
+        aperture: options.instrument.aperture,
+        offset: 0.0,
+    };
+    let nuisance = setup.nuisance.then(|| {
+        let slopes = layout.slopes(&x64);
+        // Derivatives by the coordinates from those by the parameters.
+        let row = |gradient: Values| {
+            std::array::from_fn(|k| match slopes[k] {
+                0.0 => 0.0,
+                slope => gradient[layout.places[k]] * slope,
+            })
+        };
+        Nuisance::new(samples, &view, |sample| {
+            view.gradient(sample).map_or([0.0; P], |(_, all)| row(all))
+        })
+    });
+    let known = Settled {
+        scene: exact,
+        rows: &rows,
+        nuisance,
+    };
+    let known: &Kernel<f64, P> = if rows.is_empty() && !setup.nuisance {
+        exact
+    } else {
+        &known
+    };
+    let counted = counted + rows.prior_count() - usize::from(setup.nuisance);
     let box64 = Bounds {
         lower: bounds.lower.map(R::f64),
         upper: bounds.upper.map(R::f64),
@@ -150,11 +193,11 @@ pub(crate) fn run<R: Real, const P: usize>(
     Ok(Outcome {
         model: options.model,
         terms: options.terms & options.model.terms,
-        uncertainty: uncertainty::at(exact, &best.x.map(R::f64), &box64, &layout, options, counted),
+        uncertainty: uncertainty::at(known, &x64, &box64, &layout, options, counted),
         samples: samples.len(),
-        cost: best.at.cost.f64(),
-        mse2: mse2(best.at.cost),
-        rms_ln: (best.at.cost.f64() / count).sqrt(),
+        cost,
+        mse2: (cost - priors) / (count * count),
+        rms_ln: ((cost - priors) / count).sqrt(),
         params: layout.values(&best.x),
         at_bound: (0..P).filter(on_bound).map(|k| own[k].name).collect(),
         stop: best.stop.unwrap_or(Stop::Passes),
@@ -162,5 +205,9 @@ pub(crate) fn run<R: Real, const P: usize>(
         improvement_potential: found.minima.improvement_potential().f64(),
         evaluations: found.evaluations,
         robust: None,
+        prior_cost: priors,
+        sigma: None,
+        aperture: options.instrument.aperture,
+        offset: None,
     })
 }

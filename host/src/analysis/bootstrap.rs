@@ -6,7 +6,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
+use crate::engine::{self, FitError, FitOptions, Outcome, Values, View};
 
 /// Random numbers of copy `copy` of `seed`: a function of both alone, whatever thread draws them.
 #[derive(Clone, Debug)]
@@ -32,12 +32,13 @@ impl Noise {
     }
 }
 
-/// The model at the angles of `samples`, with normal errors of ln f of standard deviation `scale` over the sample's weight.
-pub fn copy(samples: &[Sample<f64>], material: &Material, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
+/// What is seen at the angles of `samples`, with normal errors of ln f of standard deviation `scale` over the sample's weight.
+pub fn copy(samples: &[Sample<f64>], view: impl Into<View>, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
+    let view = view.into();
     // The exponential is a normal number within this.
     const LARGEST_LN: f64 = 700.0;
     let one = |sample: &Sample<f64>| {
-        let ln_f = material.ln_f(sample).unwrap_or(0.0);
+        let ln_f = view.ln_f(sample).unwrap_or(0.0);
         let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
         let ln_f = ln_f + scale / weight * noise.normal();
         Sample {
@@ -60,10 +61,22 @@ pub fn bootstrap(
 ) -> Result<Vec<Values>, FitError> {
     let one = |k: u32| {
         let mut noise = Noise::new(options.seed, u64::from(k));
-        let copy = copy(samples, &outcome.material(), outcome.uncertainty.scale, &mut noise);
-        Ok(engine::fit_from(&copy, options, &[outcome.params])?.params)
+        let copy = copy(samples, outcome.view(), outcome.uncertainty.scale, &mut noise);
+        let options = redrawn(options, &outcome.params, &mut noise);
+        Ok(engine::fit_from(&copy, &options, &[outcome.params])?.params)
     };
     (0..count).into_par_iter().map(one).collect()
+}
+
+/// The options with the priors measured again too, of a material with these values.
+pub fn redrawn(options: &FitOptions, values: &Values, noise: &mut Noise) -> FitOptions {
+    let mut options = *options;
+    for (prior, value) in options.instrument.priors.iter_mut().zip(values.iter()) {
+        if let Some(prior) = prior {
+            prior.mean = value + prior.sigma * noise.normal();
+        }
+    }
+    options
 }
 
 /// The value below which this share of `values` lies, between two of them linearly; NaN if there are none.

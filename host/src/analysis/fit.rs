@@ -11,7 +11,7 @@ use super::hints::{self, Hint};
 use super::proof::Proof;
 use super::{misfit, unseen};
 use crate::engine::clock::Stopwatch;
-use crate::engine::{self, FitError, FitOptions, Material, Outcome, Values};
+use crate::engine::{self, FitError, FitOptions, Outcome, Values, View};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
@@ -96,11 +96,13 @@ impl FittedScan {
             read_as: measurement.read_as,
             about: measurement.about.clone(),
             left_out,
-            angles: by_angle(&samples, &outcome.material()),
+            angles: by_angle(&samples, &outcome.view()),
             hints: hints::of_fit(measurement, options, &outcome, &derived),
             derived,
             options: *options,
-            chi2: measurement.sigma_ln.map(|sigma| outcome.cost / (sigma * sigma)),
+            chi2: measurement
+                .sigma_ln
+                .map(|sigma| (outcome.cost - outcome.prior_cost) / (sigma * sigma)),
             outcome,
             deviations: verdict,
             left_out_by_auto: 0,
@@ -124,10 +126,7 @@ impl FittedScan {
     /// # Errors
     /// [`FitError`].
     pub fn improved(self, measurement: &Measurement, kept: &[Sample<f64>], values: Values) -> Result<Self, FitError> {
-        let options = FitOptions {
-            robust: false,
-            ..self.options
-        };
+        let options = self.options.settled(&self.outcome);
         let known = [values, self.outcome.params];
         let outcome = Outcome {
             robust: self.outcome.robust,
@@ -184,13 +183,13 @@ fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample
     (samples, left_out)
 }
 
-fn by_angle(samples: &[Sample<f64>], material: &Material) -> Vec<AngleOfIncidence> {
+fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
     let groups = order.chunk_by(|a, b| a.theta_i == b.theta_i);
     let one = |group: &[&Sample<f64>]| {
         let squares = group.iter().filter_map(|sample| {
-            let residual = material.residual(sample)?;
+            let residual = view.residual(sample)?;
             Some(residual * residual)
         });
         AngleOfIncidence {

@@ -8,7 +8,7 @@ use brdfit_core::real::Real;
 use serde::Serialize;
 
 use crate::analysis::derived::Derived;
-use crate::engine::{FitOptions, Outcome};
+use crate::engine::{FitOptions, Outcome, robust};
 use crate::input::units::{Forward, Quantity};
 use crate::input::{Measurement, plane, side};
 
@@ -70,22 +70,25 @@ fn before_fit(measurement: &Measurement) -> Vec<Hint> {
 pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Vec<Hint> {
     let mut hints = before_fit(measurement);
     hints.extend(quantity(measurement, options, outcome, derived));
-    let moved = offset::confirmed(measurement, options, outcome);
+    let moved = match outcome.offset {
+        Some(_) => None,
+        None => offset::confirmed(measurement, options, outcome),
+    };
     hints.extend(moved.map(|(degrees, rms)| {
         Hint::new(
             "offset",
             format!(
-                "the peaks are at theta_i {degrees:+.2} deg at every angle of incidence; with {:+.2} deg added to theta_s the residual would be {:.1} % in place of {:.1} %: is the zero of an axis off?",
+                "the peaks are at theta_i {degrees:+.2} deg at every angle of incidence; with {:+.2} deg added to theta_s the residual would be {:.1} % in place of {:.1} %: is the zero of an axis off? --fit-offset fits that angle too",
                 -degrees,
                 100.0 * rms,
                 100.0 * outcome.rms_ln
             ),
         )
     }));
-    hints.extend(brightest_left_out(&measurement.samples, outcome).map(|(count, degrees)| {
+    hints.extend(lobe_left_out(&measurement.samples, outcome).map(|(count, degrees)| {
         Hint::new(
             "robust",
-            format!("--robust left out {count} samples side by side with the brightest one, at theta_i = {degrees} deg: if they are the specular peak, fit without it"),
+            format!("--robust left out {count} samples side by side at the specular or retro direction of theta_i = {degrees} deg, which are brighter than the fit: if they are a peak of the material, fit without it"),
         )
     }));
     if outcome.rms_ln >= LARGE {
@@ -134,38 +137,11 @@ fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, 
     ))
 }
 
-/// How many samples beside the brightest one of an angle of incidence a robust fit left out with it, and that angle in degrees.
-fn brightest_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usize, f64)> {
-    // A few outliers side by side happen; a lobe has more samples.
-    const RUN: usize = 6;
-    let outliers = &outcome.robust.as_ref()?.outliers;
-    let is_out = |sample: &Sample<f64>| outliers.iter().any(|&place| std::ptr::eq(&samples[place], sample));
-    let runs = plane::by_angle(samples).into_iter().filter_map(|(theta_i, mut group)| {
-        group.retain(|sample| plane::signed_theta_s(sample).is_some());
-        group.sort_by(|a, b| {
-            let angle = |sample| plane::signed_theta_s(sample).unwrap_or_default();
-            angle(a).total_cmp(&angle(b))
-        });
-        let peak = (0..group.len()).max_by(|&a, &b| group[a].brdf.total_cmp(&group[b].brdf))?;
-        let before = run(group[..peak].iter().rev().map(|sample| is_out(sample)));
-        let after = run(group[peak..].iter().map(|sample| is_out(sample)));
-        (is_out(group[peak]) && before + after >= RUN)
-            .then_some((before + after, (theta_i.to_degrees() * 1e4).round() / 1e4))
-    });
-    runs.max_by_key(|(count, _)| *count)
-}
-
-/// How many are left out before two that follow each other are kept.
-fn run(left_out: impl Iterator<Item = bool>) -> usize {
-    let (mut count, mut kept) = (0, 0);
-    for is_out in left_out {
-        kept = if is_out { 0 } else { kept + 1 };
-        if kept == 2 {
-            break;
-        }
-        count += usize::from(is_out);
-    }
-    count
+/// How many samples that may be a lobe a robust fit left out, and the angle of incidence of the nearest to its peak, degrees.
+fn lobe_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usize, f64)> {
+    let lobe = robust::lobe_left_out(samples, outcome)?;
+    let theta_i = samples[*lobe.first()?].theta_i.to_degrees();
+    Some((lobe.len(), (theta_i * 1e4).round() / 1e4))
 }
 
 /// The median; NaN of nothing.
@@ -202,10 +178,11 @@ mod tests {
         let samples: Vec<Sample<f64>> = (-80..=80)
             .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), brdf(theta_s)))
             .collect();
-        let mut outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
+        let dark: Vec<Sample<f64>> = samples.iter().filter(|sample| sample.brdf < 1.0).copied().collect();
+        let mut outcome = engine::fit(&dark, &FitOptions::default()).unwrap();
         let mut seen = |outliers: Vec<usize>| {
             outcome.robust = Some(Robust { scale: 0.01, outliers });
-            brightest_left_out(&samples, &outcome)
+            lobe_left_out(&samples, &outcome)
         };
         assert_eq!(seen((107..=113).collect()), Some((7, 30.0)));
         // Scattered outliers, a few beside the peak, and many elsewhere are no lobe.
@@ -213,6 +190,6 @@ mod tests {
         assert_eq!(seen(vec![109, 110, 111]), None);
         assert_eq!(seen((20..40).collect()), None);
         outcome.robust = None;
-        assert_eq!(brightest_left_out(&samples, &outcome), None);
+        assert_eq!(lobe_left_out(&samples, &outcome), None);
     }
 }

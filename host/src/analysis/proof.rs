@@ -53,8 +53,14 @@ pub struct Goal<'a> {
 /// Refuses what has no proof, before anything is fitted.
 ///
 /// # Errors
-/// A model that is not Eq. 14.
+/// A model that is not Eq. 14, or more than the samples takes part in the fit.
 pub fn provable(candidates: &[FitOptions]) -> Result<(), Error> {
+    if candidates.iter().any(|options| !options.instrument.is_plain()) {
+        return Err(
+            Error::new("there is no proof of a fit with a prior, an offset, an aperture or a limit on energy")
+                .help("leave these options out, or the proof"),
+        );
+    }
     match candidates.iter().find(|options| !options.model.is_paper()) {
         None => Ok(()),
         Some(options) => Err(Error::new(FitError::NoProof(options.model.name).to_string())

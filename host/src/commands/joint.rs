@@ -1,13 +1,18 @@
 //! `brdfit joint`: several scans of one material, of which chosen parameters are the same.
 
+mod repeats;
+
 use std::path::PathBuf;
 
 use brdfit_core::geometry::Sample;
 use clap::Args;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
+use crate::analysis::fit::{FittedScan, fit};
 use crate::analysis::joint::{self, Candidate};
+use crate::analysis::repeats::quantities;
 use crate::document;
 use crate::engine::joint::SCANS;
 use crate::engine::{FitOptions, Model};
@@ -24,14 +29,16 @@ use crate::terms::term_names;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]
-#[command(after_help = "Example:\n  brdfit joint red.csv green.csv blue.csv --share m")]
+#[command(
+    after_help = "With --repeats the scans are runs of one sample: each is fitted alone, and the budget of uncertainty over them is printed.\n\nExample:\n  brdfit joint red.csv green.csv blue.csv --share m\n  brdfit joint run1.csv run2.csv run3.csv --repeats --scale-uncertainty 3%"
+)]
 pub struct Arguments {
-    /// Two to eight scans, as `brdfit fit` reads them; a file may hold several
+    /// Two to eight scans (with --repeats more), as `brdfit fit` reads them; a file may hold several
     #[arg(value_name = "SCAN", required = true)]
     scans: Vec<PathBuf>,
-    /// The parameters that are the same in all scans, with commas between
-    #[arg(long, value_name = "LIST", default_value = "m")]
-    share: String,
+    /// The parameters that are the same in all scans, with commas between [default: m]
+    #[arg(long, value_name = "LIST", conflicts_with = "repeats")]
+    share: Option<String>,
     #[command(flatten)]
     search: SearchArguments,
     #[command(flatten)]
@@ -45,7 +52,11 @@ pub struct Arguments {
 /// # Errors
 /// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
-    let candidates = with_shared(&arguments.search.wanted()?, &arguments.share)?;
+    if arguments.read.repeats {
+        return run_repeats(arguments, streams);
+    }
+    arguments.search.instrument.refuse_offset("joint")?;
+    let candidates = with_shared(&arguments.search.wanted()?, arguments.share.as_deref().unwrap_or("m"))?;
     let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
@@ -66,6 +77,47 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let text = match arguments.output.format {
         Format::Text => text(&fits, best, &measurements),
         Format::Json => json(&fits, best, &measurements),
+    };
+    deliver(text.as_bytes(), target.as_ref(), streams.output)?;
+    left_out::note(&measurements, streams.errors);
+    Ok(())
+}
+
+/// The budget over runs of one sample.
+fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    let Wanted::One(options) = arguments.search.wanted()? else {
+        return Err(Error::new("--repeats compares fits of one model with the same terms")
+            .help("name one --model and its --terms"));
+    };
+    let target = arguments.output.target(&arguments.scans)?;
+    // Directions may repeat within a file too; formats that are not tables know no such option.
+    let plain = ReadOptions {
+        repeats: false,
+        ..arguments.read.clone()
+    };
+    let measurements = input::read(&arguments.scans, &plain, streams.input)
+        .or_else(|_| input::read(&arguments.scans, &arguments.read, streams.input))?;
+    if measurements.len() < 2 {
+        return Err(Error::new("one run has no repeats").help("give two or more"));
+    }
+    // The calibration is the same for all runs, and enters once.
+    let mut alone = options;
+    alone.instrument.scale_uncertainty = 0.0;
+    let alone = Wanted::One(alone);
+    let fit_all = || measurements.par_iter().map(|one| fit(one, &alone)).collect();
+    let fits: Vec<Result<FittedScan, Error>> = arguments.search.pool()?.install(fit_all);
+    let fits: Vec<FittedScan> = fits.into_iter().collect::<Result<_, _>>()?;
+    let calibration = options.instrument.scale_uncertainty;
+    let found = repeats::Found {
+        options: &options,
+        measurements: &measurements,
+        quantities: quantities(&fits, calibration),
+        fits: &fits,
+        calibration,
+    };
+    let text = match arguments.output.format {
+        Format::Text => repeats::text(&found),
+        Format::Json => repeats::json(&found),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(&measurements, streams.errors);
@@ -126,7 +178,7 @@ fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
     let rms = |cost: f64| (cost / fitted.samples as f64).sqrt();
     lines.push(format!(
         "  rms ln residual {:.4} together, {:.4} with each scan on its own",
-        rms(fitted.cost),
+        rms(fitted.of_samples),
         rms(fitted.separate)
     ));
     lines.push("  ± is one standard error; none where a parameter is on a bound, or undetermined: its error is larger than itself.".to_string());
@@ -147,7 +199,7 @@ fn table(fits: &[Candidate], best: &Candidate) -> Vec<String> {
             "{mark} {:<22} {:>4}  {:>8.5} {:>7.1} {:>7.1}  {}",
             one.options.model.name,
             one.criteria.parameters,
-            (one.fitted.cost / one.fitted.samples as f64).sqrt(),
+            (one.fitted.of_samples / one.fitted.samples as f64).sqrt(),
             one.criteria.aicc - aicc,
             one.criteria.bic - bic,
             term_names(one.options.terms & one.options.model.terms).join(", "),

@@ -57,6 +57,9 @@ pub struct Arguments {
 /// The first thing that is wrong with options, file or scan.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let wanted = arguments.search.wanted()?;
+    if arguments.calibrate.is_some() {
+        arguments.search.instrument.refuse_offset("profile --calibrate")?;
+    }
     let inputs = std::slice::from_ref(&arguments.scan);
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), inputs)?;
     let measurement = input::read_one(&arguments.scan, &arguments.read, streams.input)?;
@@ -66,10 +69,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let found = pool.install(|| -> Result<_, FitError> {
         let (options, outcome, choice) = choose::fit(samples, &wanted)?;
         let samples = &robust::kept(samples, &outcome)[..];
-        let plain = FitOptions {
-            robust: false,
-            ..options
-        };
+        let plain = options.settled(&outcome);
         let parameters = match parameters(&arguments.parameter, &plain) {
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),

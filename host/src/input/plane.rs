@@ -5,15 +5,11 @@ use std::collections::BTreeMap;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-/// A direction closer to the plane of incidence than this lies in it, as a sine: 0.1 degrees.
-const IN_PLANE: f64 = 1.745e-3;
+use crate::engine::instrument::signed;
 
 /// Scattering angle in degrees, positive forward, of a sample in the plane of incidence; none of another.
 pub fn signed_theta_s(sample: &Sample<f64>) -> Option<f64> {
-    let (sin_phi, cos_phi) = Real::sin_cos(sample.delta_phi);
-    let across = Real::sin_cos(sample.theta_s).0 * sin_phi;
-    let degrees = sample.theta_s.to_degrees();
-    (across.abs() <= IN_PLANE).then_some(if cos_phi < 0.0 { degrees } else { -degrees })
+    signed(sample).map(f64::to_degrees)
 }
 
 /// The angle between the directions of a sample and of a mirror, degrees.

@@ -14,6 +14,7 @@ use crate::input::left_out;
 use crate::names;
 use crate::number::{self, percent, shortest, two};
 use crate::plain::plain;
+use crate::result::beside;
 use crate::result::columns::{Json, of_fits};
 use crate::result::words::{self, shown};
 
@@ -316,6 +317,7 @@ fn provenance(section: &Section, command: &str) -> Markup {
                 tr { th.text { "read as" } td.text { (fit.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "nothing".into())) } }
                 tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
+                @for (about, what) in beside::lines(fit) { tr { th.text { (about) } td.text { (what) } } }
                 @if let Some(choice) = &fit.choice { tr { th.text { "choice" } td.text { (words::choice(choice)) } } }
             }
             tbody {

@@ -5,7 +5,7 @@ use crate::analysis::derived::{self, Derived};
 use crate::analysis::fit::{FittedScan, fit};
 use crate::analysis::proof::{Goal, prove};
 use crate::engine::robust;
-use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values};
+use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values, View};
 use crate::error::Error;
 use crate::input::{self, Measurement};
 use crate::plot::{self, Albedo, Met};
@@ -61,8 +61,7 @@ impl Section {
         let paper = FitOptions {
             method: Method::Paper,
             starts: None,
-            robust: false,
-            ..fit.options
+            ..fit.options.settled(&fit.outcome)
         };
         let (survey, starts) = if fit.options.method == Method::Paper {
             (fit.outcome.clone(), fit.options.starts())
@@ -104,6 +103,11 @@ fn figures(data: &plot::Data, fit: &FittedScan, minima: &[Minimum], starts: u32)
     let outcome = &fit.outcome;
     let other = |minimum: &&Minimum| (minimum.mse2 - outcome.mse2).abs() > 0.01 * outcome.mse2;
     let material = outcome.material();
+    // The samples that are drawn stand where they are.
+    let seen = View {
+        offset: 0.0,
+        ..outcome.view()
+    };
     let with = |values: Values| Material { values, ..material };
     let others = minima.iter().filter(other).map(|minimum| with(minimum.params));
     let curves: Vec<Material> = std::iter::once(material).chain(others).collect();
@@ -131,7 +135,7 @@ fn figures(data: &plot::Data, fit: &FittedScan, minima: &[Minimum], starts: u32)
         },
         Figure {
             name: "residuals",
-            svg: plot::residuals_svg(data.samples, &material, outcome.uncertainty.scale),
+            svg: plot::residuals_svg(data.samples, &seen, outcome.uncertainty.scale),
             caption: "Residuals, ln of the best fit over the measured BRDF, times the weight of the sample. The bands are one and two standard deviations of the residuals.",
             table: None,
         },

@@ -4,6 +4,7 @@ use brdfit_core::geometry::Sample;
 
 use super::marks::Data;
 use crate::engine::Outcome;
+use crate::engine::instrument::moved;
 use crate::input::Measurement;
 
 /// The samples of a picture.
@@ -23,10 +24,16 @@ impl Drawn {
         }
     }
 
-    /// Those that were fitted, and those that were left out before and in the fit.
+    /// Those that were fitted, and those that were left out before and in the fit, each where it is: an offset of theta_s is taken off.
     pub fn of_fit(measurement: &Measurement, outcome: &Outcome) -> Drawn {
         let outliers = outcome.robust.as_ref().map_or(&[][..], |robust| &robust.outliers);
-        Drawn::without(measurement, outliers)
+        let mut drawn = Drawn::without(measurement, outliers);
+        if let Some(offset) = outcome.offset {
+            for sample in drawn.samples.iter_mut().chain(&mut drawn.left_out) {
+                *sample = moved(sample, offset.value).unwrap_or(*sample);
+            }
+        }
+        drawn
     }
 
     /// Those of a scan, of which the ones in these places are shown as left out.

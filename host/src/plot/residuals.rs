@@ -8,7 +8,7 @@ use super::axis::Axis;
 use super::frame::{BOTTOM, CAPTION, Grid, LEFT, RIGHT, WIDTH, frame};
 use super::marks::{Data, Marks, Panel, thinned};
 use super::svg;
-use crate::engine::Material;
+use crate::engine::View;
 
 const TOP: f64 = 10.0;
 
@@ -16,14 +16,14 @@ const TOP: f64 = 10.0;
 ///
 /// `scale` is the standard deviation of a residual: the bands are one and two of them wide on each side.
 /// All panels share the vertical range; of very many angles and samples only some are drawn, as in [`super::scan_svg`].
-pub fn residuals_svg(samples: &[Sample<f64>], material: &Material, scale: f64) -> String {
+pub fn residuals_svg(samples: &[Sample<f64>], view: &View, scale: f64) -> String {
     let marks = Marks::of(&Data {
         samples,
         left_out: &[],
         left_out_count: 0,
     });
     let band = if scale.is_finite() { 2.2 * scale } else { 0.0 };
-    let residuals = samples.iter().filter_map(|sample| material.residual(sample));
+    let residuals = samples.iter().filter_map(|sample| view.residual(sample));
     let far = residuals.map(f64::abs).fold(band, f64::max);
     let mut body = String::new();
     let mut bottom = TOP;
@@ -46,8 +46,7 @@ pub fn residuals_svg(samples: &[Sample<f64>], material: &Material, scale: f64) -
                 &[(0.0, zero), (grid.width, zero)],
             );
             let each = panel.samples().iter().zip(&panel.measured);
-            let points =
-                each.filter_map(|(sample, point)| Some((x.pixel(point.0), y.pixel(material.residual(sample)?))));
+            let points = each.filter_map(|(sample, point)| Some((x.pixel(point.0), y.pixel(view.residual(sample)?))));
             svg::dots(&mut body, thinned(points.collect(), block.limit()).into_iter());
             body.push_str("</g></g>");
         }

@@ -222,6 +222,8 @@ fn found() -> Vec<Column> {
     let worst = |row: &Row| Some(row.outcome.minima.last().map_or(row.outcome.mse2, |worst| worst.mse2));
     let potential = "(high - low) / high of the MSE^2 of the minima (Table 3)";
     let scale = "robust standard deviation of a residual of ln f";
+    let offset = "what the instrument reads for theta_s = 0, if that was fitted";
+    let priors = "standard deviation of ln f by which priors were weighed";
     vec![
         number(
             "rms_ln",
@@ -252,6 +254,13 @@ fn found() -> Vec<Column> {
         number("robust_scale", "1", scale, Found, |row| {
             Some(row.outcome.robust.as_ref()?.scale)
         }),
+        number("offset_deg", "deg", offset, Found, |row| {
+            Some(row.outcome.offset?.value.to_degrees())
+        }),
+        number("offset_stderr_deg", "deg", "its standard error", Found, |row| {
+            Some(row.outcome.offset?.stderr.to_degrees())
+        }),
+        number("prior_scale", "1", priors, Found, |row| row.outcome.sigma),
     ]
 }
 

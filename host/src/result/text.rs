@@ -5,6 +5,7 @@ mod uncertainty;
 
 use std::fmt::Write;
 
+use super::beside;
 use crate::analysis::fit::{AngleOfIncidence, FittedScan};
 use crate::engine::{Minimum, Outcome};
 use crate::input::{label, left_out};
@@ -59,6 +60,9 @@ fn page(fit: &FittedScan, minima: bool) -> String {
         };
         let value = six(outcome.params[index]);
         line(format!("    {:<8} {value:>13}{unit}{remark}", parameter.name));
+    }
+    for (about, what) in beside::lines(fit) {
+        line(format!("  {about:<9}  {what}"));
     }
     line(format!("  MSE^2      {}", six(outcome.mse2)));
     line(format!(

@@ -121,7 +121,7 @@ def fit(
     theta_i, theta_s, brdf, delta_phi, sigma, mask, drop_invalid : the samples, as for `scan`; or a `Scan` in place of all of them.
     certify : proves that no parameters within the bounds have an MSE^2 lower by more than this part, such as 0.05, or finds them; of the default model. `certificate` of the result says what is proved.
     proof_boxes, proof_seconds : what the proof may take at most.
-    search : model, terms, bounds, robust, method, starts, seed, precision, threads: see `Search`.
+    search : model, terms, bounds, robust, prior, fit_offset, aperture_half_angle, scale_uncertainty, conserve_energy, method, starts, seed, precision, threads: see `Search`.
 
     Raises
     ------

@@ -24,6 +24,16 @@ class Search(TypedDict, total=False):
     """Of parameters by name, `(least, largest)` or the number at which it is fixed, in the parameter's unit; the others have those of their model."""
     robust: bool
     """Leaves out samples far from the fit, 6 robust standard deviations of ln BRDF."""
+    prior: Mapping[str, str]
+    """What parameters are known to be from elsewhere: {"n": "1.50+-0.02"}."""
+    fit_offset: bool
+    """Fits the offset of the zero of theta_s too, up to 10 degrees; for scans in the plane of incidence."""
+    aperture_half_angle: float
+    """Half-angle of the cone that the detector sees from the sample, degrees: the model is averaged over it."""
+    scale_uncertainty: float
+    """Relative standard uncertainty of the calibration, which adds to errors and changes no value."""
+    conserve_energy: bool
+    """Holds the reflectance to at most 1 at the angles of incidence of the scan."""
     method: Literal["default", "paper"]
     """"default", or "paper" for fits from 250 uniform starts, which list more minima."""
     starts: int
@@ -68,7 +78,7 @@ class Reading(TypedDict, total=False):
 # Least and largest of whole numbers.
 _WHOLE = {"seed": (0, 2**64 - 1), "threads": (1, 1024), "starts": (1, 1_000_000)}
 # One word for each entry, in place of one for all.
-_REPEATED = {"weight_angle"}
+_REPEATED = {"weight_angle", "prior"}
 
 
 def words(options: Mapping[str, Any], known: Iterable[str], caller: str) -> list[str]:

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::hold::hold;
-use crate::analysis::bootstrap::{Noise, copy, quantile};
-use crate::engine::{self, FitError, FitOptions, Material, Values};
+use crate::analysis::bootstrap::{Noise, copy, quantile, redrawn};
+use crate::engine::{self, FitError, FitOptions, Material, Values, View};
 
 /// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
 pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
@@ -24,7 +24,7 @@ pub fn threshold(level: f64, degrees_of_freedom: f64) -> f64 {
 
 /// The rises of the cost, over the variance of a residual, that shares of [`LEVELS`] of the copies stay below when parameter `index` is held at what they were made with.
 ///
-/// The `count` copies are of the model at `params`, with normal errors of ln f of standard deviation `scale`; threads of the current rayon pool share them, and change no bit.
+/// The `count` copies are of the model at `params`, through the aperture and without an offset, with normal errors of ln f of standard deviation `scale`; threads of the current rayon pool share them, and change no bit.
 /// Where bounds are near, or parameters can stand in for each other, the rise is less than F says: there are fewer ways to go.
 ///
 /// # Errors
@@ -37,15 +37,20 @@ pub fn thresholds(
     scale: f64,
     count: u32,
 ) -> Result<[f64; 2], FitError> {
-    let value = params[index];
-    let material = Material {
-        model: options.model,
-        values: *params,
+    let view = View {
+        material: Material {
+            model: options.model,
+            values: *params,
+        },
+        aperture: options.instrument.aperture,
+        offset: 0.0,
     };
     let one = |k: u32| {
-        let copy = copy(samples, &material, scale, &mut Noise::new(options.seed, u64::from(k)));
+        let mut noise = Noise::new(options.seed, u64::from(k));
+        let copy = copy(samples, view, scale, &mut noise);
+        let options = &redrawn(options, params, &mut noise);
         let outcome = engine::fit_from(&copy, options, &[*params])?;
-        let held = hold(&copy, options, &outcome, index, value)?;
+        let held = hold(&copy, options, &outcome, index, params[index])?;
         // What is free begins where what is held ended, and so never costs more.
         let best = engine::descend(&copy, options, &[outcome.params, held.params])?;
         let best = best.map_or(outcome.cost, |(cost, _)| cost.min(held.cost));

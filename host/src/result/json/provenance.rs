@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::by_name::ByName;
-use crate::engine::FitOptions;
+use crate::engine::{FitOptions, Instrument};
 use crate::input::source::Source;
 use crate::input::{About, ReadOptions};
 use crate::names;
@@ -26,8 +26,36 @@ pub struct Provenance<'a> {
 struct Search {
     precision: &'static str,
     robust: bool,
+    /// What took part beside the samples; not there if nothing did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instrument: Option<Beside>,
     /// Least and largest value of each parameter.
     bounds: ByName<[f64; 2]>,
+}
+
+/// What took part in a fit beside the samples.
+#[derive(Serialize)]
+struct Beside {
+    /// Mean and standard uncertainty of parameters; null where there is none.
+    priors: ByName<Option<[f64; 2]>>,
+    fit_offset: bool,
+    aperture_half_angle_deg: f64,
+    scale_uncertainty: f64,
+    conserve_energy: bool,
+}
+
+fn beside(options: &FitOptions) -> Option<Beside> {
+    let instrument = &options.instrument;
+    let some = *instrument != Instrument::default();
+    some.then(|| Beside {
+        priors: ByName::new(options.model, |place| {
+            instrument.priors[place].map(|prior| [prior.mean, prior.sigma])
+        }),
+        fit_offset: instrument.offsets.is_some(),
+        aperture_half_angle_deg: instrument.aperture.to_degrees(),
+        scale_uncertainty: instrument.scale_uncertainty,
+        conserve_energy: instrument.limit.is_some(),
+    })
 }
 
 /// Of a scan, and of the search for its fit if that took options.
@@ -39,6 +67,7 @@ pub fn provenance<'a>(about: &'a About, options: Option<&FitOptions>) -> Provena
         search: options.map(|options| Search {
             precision: names::precision(options.precision),
             robust: options.robust,
+            instrument: beside(options),
             bounds: ByName::new(options.model, |place| [options.lower[place], options.upper[place]]),
         }),
     }

@@ -1,0 +1,243 @@
+//! Runs of one sample, each fitted alone, and the budget of uncertainty over them (JCGM 100:2008, the GUM).
+//!
+//! A single run does not know what changes between runs: the spot, the alignment, the lamp.
+//! The spread of the runs' values holds that and the noise within them, and is evaluated as type A; a calibration that is the same for all runs is type B.
+
+use brdfit_core::real::Real;
+use brdfit_core::uncertainty::Place;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
+
+use super::derived::{Derived, Value};
+use super::fit::FittedScan;
+use super::undetermined::undetermined;
+
+/// Confidence of the expanded uncertainty.
+pub const LEVEL: f64 = 0.95;
+/// A spread or a run is out of the ordinary at this probability.
+const UNLIKELY: f64 = 0.05;
+
+/// One quantity over all runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// What it is.
+    pub name: String,
+    /// Its unit; empty where it is dimensionless.
+    pub unit: &'static str,
+    /// The angle of incidence that it belongs to, degrees; none for a parameter.
+    pub theta_i: Option<f64>,
+    /// Its value in each run with the standard error from within the run; none where the run does not tell it.
+    pub runs: Vec<Option<Value>>,
+    /// Its budget; none if a run does not tell it.
+    pub budget: Option<Budget>,
+}
+
+/// The budget of one quantity, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Mean of the runs.
+    pub mean: f64,
+    /// Standard deviation of the runs' values.
+    pub between: f64,
+    /// Root of the mean square of the standard errors from within the runs.
+    pub within: f64,
+    /// Probability of such a spread by chance, if nothing changed between runs.
+    pub by_chance: f64,
+    /// Standard uncertainty of the mean by statistics (type A), over one degree of freedom less than runs.
+    pub type_a: f64,
+    /// That of the calibration (type B).
+    pub type_b: f64,
+    /// Combined standard uncertainty.
+    pub combined: f64,
+    /// Its effective degrees of freedom (Welch and Satterthwaite).
+    pub degrees_of_freedom: f64,
+    /// Coverage factor for [`LEVEL`]: Student's t.
+    pub coverage: f64,
+    /// Expanded uncertainty.
+    pub expanded: f64,
+    /// The run that stands apart from the others, by Grubbs's test; never one of two.
+    pub apart: Option<usize>,
+}
+
+impl Budget {
+    /// Is the spread of the runs more than their own errors explain?
+    pub fn differs(&self) -> bool {
+        self.by_chance < UNLIKELY
+    }
+}
+
+/// Over two runs or more; `calibration` is the relative standard uncertainty of a factor that all runs have in common, and which `fits` do not count.
+pub fn quantities(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
+    let open: Vec<Vec<&str>> = fits.iter().map(open).collect();
+    let Some(first) = fits.first() else { return Vec::new() };
+    let model = first.outcome.model;
+    let parameters = first.outcome.present().map(|place| {
+        let parameter = &model.parameters[place];
+        let value = |(fit, open): (&FittedScan, &Vec<&str>)| {
+            let known = &fit.outcome.uncertainty;
+            let inside = known.places[place] == Some(Place::Inside) && !open.contains(&parameter.name);
+            inside.then(|| Value {
+                value: fit.outcome.params[place],
+                stderr: known.stderr[place],
+            })
+        };
+        let scaled = if parameter.is_weight() { calibration } else { 0.0 };
+        let runs = fits.iter().zip(&open).map(value).collect();
+        quantity(fits, parameter.name.into(), parameter.unit, None, runs, scaled)
+    });
+    let parameters: Vec<Quantity> = parameters.collect();
+    parameters.into_iter().chain(derived(fits, calibration)).collect()
+}
+
+/// Parameters that a run does not determine.
+fn open(fit: &FittedScan) -> Vec<&'static str> {
+    let all = undetermined(&fit.outcome.material(), &fit.outcome.uncertainty, &fit.derived);
+    all.into_iter().flat_map(|what| what.parameters).collect()
+}
+
+/// What is derived at the angles of incidence that all runs have.
+fn derived(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
+    type Of = fn(&Derived) -> Option<Value>;
+    let degrees = |value: Value| Value {
+        value: value.value.to_degrees(),
+        stderr: value.stderr.to_degrees(),
+    };
+    let width: Of = |at| at.peak.and_then(|peak| peak.width);
+    let kinds: [(&str, &'static str, Of, f64); 5] = [
+        ("rho_s F", "", |at| at.rho_s_f, calibration),
+        ("rho_v F", "", |at| at.rho_v_f, calibration),
+        ("peak", "1/sr", |at| at.peak.map(|peak| peak.f), calibration),
+        ("width", "deg", width, 0.0),
+        ("reflectance", "", |at| Some(at.reflectance), calibration),
+    ];
+    let mut all = Vec::new();
+    for at in &fits[0].derived {
+        let same = |other: &&Derived| (other.theta_i - at.theta_i).abs() < 0.01f64.to_radians();
+        let everywhere: Option<Vec<&Derived>> = fits.iter().map(|fit| fit.derived.iter().find(same)).collect();
+        let Some(everywhere) = everywhere else { continue };
+        for (name, unit, of, scaled) in kinds {
+            let value = |at: &&Derived| {
+                let value = of(at).filter(|value| value.stderr.is_finite() && value.stderr < value.value)?;
+                Some(if unit == "deg" { degrees(value) } else { value })
+            };
+            let runs: Vec<Option<Value>> = everywhere.iter().map(value).collect();
+            if runs.iter().any(Option::is_some) {
+                let theta_i = (at.theta_i.to_degrees() * 1e9).round() / 1e9;
+                all.push(quantity(fits, name.into(), unit, Some(theta_i), runs, scaled));
+            }
+        }
+    }
+    all
+}
+
+fn quantity(
+    fits: &[FittedScan],
+    name: String,
+    unit: &'static str,
+    theta_i: Option<f64>,
+    runs: Vec<Option<Value>>,
+    scaled: f64,
+) -> Quantity {
+    let all: Option<Vec<Value>> = runs.iter().copied().collect();
+    let within = fits.iter().map(|fit| fit.outcome.uncertainty.degrees_of_freedom).sum();
+    Quantity {
+        budget: all.and_then(|values| budget(&values, within, scaled)),
+        name,
+        unit,
+        theta_i,
+        runs,
+    }
+}
+
+/// Of two values or more, whose standard errors have so many degrees of freedom in all; `scaled` is the relative uncertainty of a common factor.
+pub fn budget(values: &[Value], degrees_within: usize, scaled: f64) -> Option<Budget> {
+    if values.len() < 2 {
+        return None;
+    }
+    let count = values.len() as f64;
+    let mean = values.iter().map(|value| value.value).sum::<f64>() / count;
+    let squares = values.iter().map(|value| (value.value - mean) * (value.value - mean));
+    let between = (squares.sum::<f64>() / (count - 1.0)).sqrt();
+    let within = (values.iter().map(|value| value.stderr * value.stderr).sum::<f64>() / count).sqrt();
+    let ratio = (between / within) * (between / within);
+    let chance = FisherSnedecor::new(count - 1.0, degrees_within.max(1) as f64);
+    let (type_a, type_b) = (between / count.sqrt(), scaled * mean.abs());
+    let combined = type_a.hypot(type_b);
+    let part = combined / type_a;
+    let degrees_of_freedom = (count - 1.0) * part * part * part * part;
+    let coverage = student(0.5 + 0.5 * LEVEL, degrees_of_freedom);
+    Some(Budget {
+        mean,
+        between,
+        within,
+        by_chance: chance.map_or(1.0, |chance| if ratio.is_finite() { chance.sf(ratio) } else { 0.0 }),
+        type_a,
+        type_b,
+        combined,
+        degrees_of_freedom,
+        coverage,
+        expanded: coverage * combined,
+        apart: grubbs(values, mean, between),
+    })
+}
+
+/// The run that is farthest from the mean, if it is farther than one of as many normal ones is in 95 % of cases (Grubbs 1969; ISO 5725-2).
+fn grubbs(values: &[Value], mean: f64, deviation: f64) -> Option<usize> {
+    let count = values.len() as f64;
+    if values.len() < 3 {
+        return None;
+    }
+    let away = |place: &usize| (values[*place].value - mean).abs();
+    let farthest = (0..values.len()).max_by(|a, b| away(a).total_cmp(&away(b)))?;
+    let t = student(1.0 - UNLIKELY / (2.0 * count), count - 2.0);
+    let limit = (count - 1.0) / count.sqrt() * (t * t / (count - 2.0 + t * t)).sqrt();
+    (away(&farthest) > limit * deviation).then_some(farthest)
+}
+
+/// The value that Student's t of so many degrees of freedom stays below with this probability.
+fn student(probability: f64, degrees_of_freedom: f64) -> f64 {
+    // From here on t is normal in all its digits that are printed.
+    const MANY: f64 = 1e6;
+    let degrees = degrees_of_freedom.min(MANY);
+    StudentsT::new(0.0, 1.0, degrees).map_or(f64::INFINITY, |t| Real::abs(t.inverse_cdf(probability)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(list: &[f64], stderr: f64) -> Vec<Value> {
+        list.iter().map(|&value| Value { value, stderr }).collect()
+    }
+
+    #[test]
+    fn a_budget_is_that_of_the_guide() {
+        // Four runs, and a calibration known to 1 %.
+        let all = values(&[10.0, 10.2, 9.9, 10.1], 0.02);
+        let found = budget(&all, 400, 0.01).unwrap();
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
+        close(found.mean, 10.05);
+        close(found.between, 0.129_099);
+        close(found.type_a, 0.064_550);
+        close(found.type_b, 0.1005);
+        close(found.combined, 0.119_443);
+        // (u_c / u_a)^4 times 3; t of 35.17 degrees of freedom.
+        close(found.degrees_of_freedom, 35.173);
+        close(found.coverage, 2.029_8);
+        assert!(found.differs() && found.apart.is_none());
+        // Without a calibration t has one degree of freedom less than there are runs.
+        close(budget(&all, 400, 0.0).unwrap().coverage, 3.182_4);
+        close(budget(&all[..2], 400, 0.0).unwrap().coverage, 12.706_2);
+        assert_eq!(budget(&all[..1], 400, 0.0), None);
+    }
+
+    #[test]
+    fn one_run_of_many_can_stand_apart() {
+        // Grubbs's limit for six values is 1.887.
+        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), 100, 0.0).unwrap();
+        assert_eq!(apart(1.2).apart, Some(5));
+        assert_eq!(apart(1.03).apart, None);
+        // Of two nobody knows which.
+        assert_eq!(budget(&values(&[1.0, 2.0], 0.01), 100, 0.0).unwrap().apart, None);
+        assert!(!budget(&values(&[1.0, 1.01], 0.01), 100, 0.0).unwrap().differs());
+    }
+}

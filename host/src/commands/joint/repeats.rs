@@ -1,0 +1,225 @@
+//! `brdfit joint --repeats`: runs of one sample and their budget of uncertainty.
+
+use serde::Serialize;
+
+use crate::analysis::fit::FittedScan;
+use crate::analysis::repeats::{Budget, LEVEL, Quantity};
+use crate::document;
+use crate::engine::FitOptions;
+use crate::input::Measurement;
+use crate::number::{four, percent, six, two};
+use crate::result::json::provenance::{Provenance, provenance};
+use crate::terms::term_names;
+
+/// What came out.
+pub struct Found<'a> {
+    /// How every run was fitted.
+    pub options: &'a FitOptions,
+    /// The runs as they were read.
+    pub measurements: &'a [Measurement],
+    /// Their fits.
+    pub fits: &'a [FittedScan],
+    /// The relative standard uncertainty of the calibration.
+    pub calibration: f64,
+    /// What follows from them.
+    pub quantities: Vec<Quantity>,
+}
+
+/// For people.
+pub fn text(found: &Found) -> String {
+    let terms = term_names(found.options.terms & found.options.model.terms).join(", ");
+    let mut lines = vec![format!(
+        "{} runs, each fitted alone with {} {terms}",
+        found.fits.len(),
+        found.options.model.name
+    )];
+    for (place, (measurement, fit)) in found.measurements.iter().zip(found.fits).enumerate() {
+        lines.push(format!(
+            "  run {}  {}: {} samples, rms ln residual {:.4}",
+            place + 1,
+            measurement.label(),
+            fit.outcome.samples,
+            fit.outcome.rms_ln
+        ));
+    }
+    lines.push(row([
+        "quantity", "mean", "between", "within", "type A", "type B", "combined", "dof", "k", "expanded",
+    ]
+    .map(String::from)));
+    for quantity in &found.quantities {
+        lines.push(match &quantity.budget {
+            Some(budget) => budgeted(&name(quantity), budget),
+            None => format!("  {:<26} not determined in {}", name(quantity), missing(quantity)),
+        });
+    }
+    lines.extend(verdict(found));
+    lines.join("\n").trim_end().to_string() + "\n"
+}
+
+fn row(cells: [String; 10]) -> String {
+    let [quantity, mean, rest @ ..] = cells;
+    let rest: String = rest.iter().map(|cell| format!(" {cell:>9}")).collect();
+    format!("  {quantity:<26} {mean:>11}{rest}")
+}
+
+fn budgeted(name: &str, budget: &Budget) -> String {
+    row([
+        name.to_string(),
+        six(budget.mean),
+        two(budget.between),
+        two(budget.within),
+        two(budget.type_a),
+        two(budget.type_b),
+        two(budget.combined),
+        four(budget.degrees_of_freedom),
+        four(budget.coverage),
+        two(budget.expanded),
+    ])
+}
+
+fn name(quantity: &Quantity) -> String {
+    let unit = if quantity.unit.is_empty() {
+        String::new()
+    } else {
+        format!(", {}", quantity.unit)
+    };
+    match quantity.theta_i {
+        Some(theta_i) => format!("{} at {} deg{unit}", quantity.name, six(theta_i)),
+        None => format!("{}{unit}", quantity.name),
+    }
+}
+
+fn missing(quantity: &Quantity) -> String {
+    let all = quantity.runs.iter().enumerate().filter(|(_, run)| run.is_none());
+    let all: Vec<String> = all.map(|(place, _)| format!("run {}", place + 1)).collect();
+    all.join(", ")
+}
+
+/// What the table means, and whether the runs agree.
+fn verdict(found: &Found) -> Vec<String> {
+    let budgets = || {
+        found
+            .quantities
+            .iter()
+            .filter_map(|one| Some((one, one.budget.as_ref()?)))
+    };
+    let mut lines = vec![format!(
+        "  mean +- expanded holds the value with {:.0} %: k is Student's t for the effective degrees of freedom. Between: standard deviation of the runs; within: of one run by its own residuals.",
+        100.0 * LEVEL
+    )];
+    if found.calibration > 0.0 {
+        lines.push(format!(
+            "  Type B is the calibration, known to {}.",
+            percent(found.calibration)
+        ));
+    }
+    let more: Vec<String> = budgets()
+        .filter(|(_, budget)| budget.differs())
+        .map(|(one, budget)| format!("{} ({} times)", name(one), two(budget.between / budget.within)))
+        .collect();
+    lines.push(if more.is_empty() {
+        "  The runs differ by no more than their own errors.".into()
+    } else {
+        format!("  The runs differ by more than their own errors: {}.", more.join(", "))
+    });
+    let apart: Vec<String> = budgets()
+        .filter_map(|(one, budget)| Some(format!("run {} in {}", budget.apart? + 1, name(one))))
+        .collect();
+    lines.push(match found.fits.len() {
+        2 => "  Of two runs no test tells which is off.".into(),
+        _ if apart.is_empty() => "  No run stands apart from the others (Grubbs's test, 5 %).".into(),
+        _ => format!(
+            "  Stands apart from the others (Grubbs's test, 5 %): {}.",
+            apart.join(", ")
+        ),
+    });
+    lines
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    model: &'static str,
+    terms: Vec<&'static str>,
+    level: f64,
+    calibration: f64,
+    runs: Vec<Run<'a>>,
+    quantities: Vec<Row<'a>>,
+}
+
+#[derive(Serialize)]
+struct Run<'a> {
+    scan: String,
+    samples: usize,
+    rms_ln: f64,
+    provenance: Provenance<'a>,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    name: &'a str,
+    unit: &'static str,
+    theta_i_deg: Option<f64>,
+    /// Null where a run does not tell it.
+    values: Vec<Option<f64>>,
+    /// From within each run.
+    stderr: Vec<Option<f64>>,
+    /// Null if a run does not tell it.
+    budget: Option<JsonBudget>,
+}
+
+#[derive(Serialize)]
+struct JsonBudget {
+    mean: f64,
+    between: f64,
+    within: f64,
+    /// Probability of such a spread if nothing changed between runs.
+    by_chance: f64,
+    type_a: f64,
+    type_b: f64,
+    combined: f64,
+    effective_degrees_of_freedom: f64,
+    coverage_factor: f64,
+    expanded: f64,
+    /// From 1.
+    run_apart: Option<usize>,
+}
+
+/// For programs.
+pub fn json(found: &Found) -> String {
+    let pairs = found.measurements.iter().zip(found.fits);
+    let runs = pairs.map(|(measurement, fit)| Run {
+        scan: measurement.label(),
+        samples: fit.outcome.samples,
+        rms_ln: fit.outcome.rms_ln,
+        provenance: provenance(&measurement.about, Some(found.options)),
+    });
+    let budget = |budget: &Budget| JsonBudget {
+        mean: budget.mean,
+        between: budget.between,
+        within: budget.within,
+        by_chance: budget.by_chance,
+        type_a: budget.type_a,
+        type_b: budget.type_b,
+        combined: budget.combined,
+        effective_degrees_of_freedom: budget.degrees_of_freedom,
+        coverage_factor: budget.coverage,
+        expanded: budget.expanded,
+        run_apart: budget.apart.map(|place| place + 1),
+    };
+    let quantities = found.quantities.iter().map(|one| Row {
+        name: &one.name,
+        unit: one.unit,
+        theta_i_deg: one.theta_i,
+        values: one.runs.iter().map(|run| run.map(|run| run.value)).collect(),
+        stderr: one.runs.iter().map(|run| run.map(|run| run.stderr)).collect(),
+        budget: one.budget.as_ref().map(budget),
+    });
+    document::json(&Document {
+        model: found.options.model.name,
+        terms: term_names(found.options.terms & found.options.model.terms),
+        level: LEVEL,
+        calibration: found.calibration,
+        runs: runs.collect(),
+        quantities: quantities.collect(),
+    })
+}

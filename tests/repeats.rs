@@ -1,0 +1,196 @@
+//! Intervals over runs of one sample hold the actual values, and runs that stand apart are named.
+
+use brdfit::analysis::bootstrap::{Noise, copy};
+use brdfit::analysis::choose::Wanted;
+use brdfit::analysis::fit::{FittedScan, fit};
+use brdfit::analysis::repeats::{Quantity, quantities};
+use brdfit::engine::{FitOptions, Material};
+use brdfit::input::{self, Measurement, ReadOptions};
+use brdfit_core::brdf::{DIFFUSE, SURFACE};
+use brdfit_core::geometry::Sample;
+use brdfit_suite::program::{brdfit, fail, write};
+use brdfit_suite::scan::{left_out, shared};
+use rayon::prelude::*;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const ACTUAL: [f64; 6] = [0.2, 0.8, 0.0, 0.15, 1.5, 0.0];
+
+fn table(samples: &[Sample<f64>]) -> String {
+    let row = |sample: &Sample<f64>| {
+        let (theta_i, theta_s) = (sample.theta_i.to_degrees(), sample.theta_s.to_degrees());
+        format!("{theta_i},{theta_s},{}\n", sample.brdf)
+    };
+    let rows: String = samples.iter().map(row).collect();
+    format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{rows}")
+}
+
+fn measurement(name: &str, text: &str) -> Measurement {
+    input::parse(name, text.as_bytes(), &ReadOptions::default())
+        .expect("a scan")
+        .remove(0)
+}
+
+/// A run: the spot changes rho_d by 5 %, rho_s by 3 % and m by 2 %, and the noise of a sample is 3 %.
+fn run(seed: u64, effect: f64) -> String {
+    let mut noise = Noise::new(21, seed);
+    let [rho_d, rho_s, rho_v, m, n, kappa] = ACTUAL;
+    let mut changed = |value: f64, part: f64| value * (1.0 + effect * part * noise.normal());
+    let material = Material::paper([
+        changed(rho_d, 0.05),
+        changed(rho_s, 0.03),
+        rho_v,
+        changed(m, 0.02),
+        n,
+        kappa,
+    ]);
+    let grid: Vec<Sample<f64>> = (-80..=80)
+        .step_by(5)
+        .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), 1.0))
+        .collect();
+    table(&copy(&grid, &material, 0.03, &mut noise))
+}
+
+fn wanted() -> Wanted {
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    Wanted::One(options)
+}
+
+/// The budget over so many runs.
+fn experiment(first: u64, runs: u64, effect: f64) -> Vec<Quantity> {
+    let fitted = |seed: u64| fit(&measurement("run", &run(seed, effect)), &wanted()).expect("a fit");
+    let fits: Vec<FittedScan> = (first..first + runs).map(fitted).collect();
+    quantities(&fits, 0.0)
+}
+
+#[test]
+fn intervals_over_runs_hold_the_actual_values() {
+    const EXPERIMENTS: u64 = 400;
+    // Values without an effect of the run, which is even around them.
+    let exact = {
+        let grid: Vec<Sample<f64>> = (-80..=80)
+            .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), 1.0))
+            .collect();
+        let clean = copy(&grid, &Material::paper(ACTUAL), 0.0, &mut Noise::new(0, 0));
+        let fitted = fit(&measurement("exact", &table(&clean)), &wanted()).expect("a fit");
+        quantities(&[fitted.clone(), fitted], 0.0)
+    };
+    for (runs, effect) in [(3, 1.0), (5, 1.0), (4, 0.0)] {
+        let all: Vec<Vec<Quantity>> = (0..EXPERIMENTS)
+            .into_par_iter()
+            .map(|k| experiment(1000 * runs + k * runs, runs, effect))
+            .collect();
+        for (place, actual) in exact.iter().enumerate() {
+            let actual = actual.runs[0].expect("an exact fit tells all").value;
+            let holds = |quantity: &Quantity| {
+                let budget = quantity.budget.expect("all runs tell it");
+                (budget.mean - actual).abs() <= budget.expanded
+            };
+            let held = all.iter().filter(|one| holds(&one[place])).count() as f64 / EXPERIMENTS as f64;
+            let differs = all
+                .iter()
+                .filter(|one| one[place].budget.is_some_and(|budget| budget.differs()))
+                .count();
+            let name = &all[0][place].name;
+            println!(
+                "{runs} runs, effect {effect}: {name} held in {:.1} %, differs in {differs}",
+                100.0 * held
+            );
+            assert!((0.925..=0.975).contains(&held), "{name}: {held}");
+            // Without an effect the runs differ by no more than their errors, in 95 % of cases.
+            if effect == 0.0 {
+                assert!(differs as f64 <= 0.09 * EXPERIMENTS as f64, "{name}: {differs}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_that_stands_apart_is_named() {
+    let folder = TempDir::new().unwrap();
+    let mut files: Vec<String> = (0..6)
+        .map(|k| write(&folder, &format!("run{k}.csv"), run(k, 0.1)))
+        .collect();
+    let mut odd = measurement("odd", &run(9, 0.1)).samples;
+    odd.iter_mut().for_each(|sample| sample.brdf *= 1.3);
+    files.push(write(&folder, "odd.csv", table(&odd)));
+    let mut arguments = vec![
+        "joint",
+        "--repeats",
+        "--terms",
+        "diffuse,surface",
+        "--fix",
+        "n=1.5",
+        "--scale-uncertainty",
+        "2%",
+    ];
+    arguments.extend(files.iter().map(String::as_str));
+    let ran = brdfit(&arguments, b"");
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    assert!(
+        ran.output.contains("run 7 in rho_d") && ran.output.contains("Type B is the calibration, known to 2.0 %"),
+        "{}",
+        ran.output
+    );
+    arguments.extend(["--format", "json"]);
+    let found: Value = serde_json::from_str(&brdfit(&arguments, b"").output).unwrap();
+    let rho_d = &found["quantities"][0];
+    assert_eq!(
+        (rho_d["name"].as_str(), &rho_d["budget"]["run_apart"]),
+        (Some("rho_d"), &7.into())
+    );
+    let number = |name: &str| rho_d["budget"][name].as_f64().unwrap();
+    assert!((number("type_b") / number("mean") / 0.02 - 1.0).abs() < 1e-9);
+    assert!((number("type_a").hypot(number("type_b")) / number("combined") - 1.0).abs() < 1e-9);
+    assert!((number("coverage_factor") * number("combined") / number("expanded") - 1.0).abs() < 1e-9);
+    // A width takes nothing from the calibration.
+    let width = found["quantities"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|one| one["name"] == "width")
+        .unwrap();
+    assert_eq!(
+        (width["unit"].as_str(), width["budget"]["type_b"].as_f64()),
+        (Some("deg"), Some(0.0))
+    );
+    // One run, a choice of models, and parameters to share make no repeats.
+    assert!(fail(&["joint", "--repeats", &files[0]]).contains("two or more"));
+    assert!(fail(&["joint", "--repeats", "--terms", "auto", &files[0], &files[1]]).contains("one model"));
+    assert!(fail(&["joint", "--repeats", "--share", "m", &files[0], &files[1]]).contains("--share"));
+}
+
+#[test]
+fn measured_runs_agree_within_the_budget() {
+    let files = ["run1", "run2"].map(|run| shared(&format!("real/rt300s_aeroglaze_z307_{run}.csv")));
+    if let Some(missing) = files.iter().find(|file| !file.exists()) {
+        return left_out("two runs of one paint", missing);
+    }
+    let files = files.map(|file| file.to_str().unwrap().to_string());
+    let ran = brdfit(&["joint", "--repeats", &files[0], &files[1], "--format", "json"], b"");
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    let found: Value = serde_json::from_str(&ran.output).unwrap();
+    let mut budgets = 0;
+    for quantity in found["quantities"].as_array().unwrap() {
+        let budget = &quantity["budget"];
+        if budget.is_null() {
+            continue;
+        }
+        budgets += 1;
+        for value in quantity["values"].as_array().unwrap() {
+            let away = (value.as_f64().unwrap() - budget["mean"].as_f64().unwrap()).abs();
+            assert!(away <= budget["expanded"].as_f64().unwrap(), "{quantity}");
+        }
+    }
+    // rho_d and the reflectance differ by several of the errors that one run tells.
+    let ratio = |quantity: &Value| {
+        quantity["budget"]["between"].as_f64().unwrap() / quantity["budget"]["within"].as_f64().unwrap()
+    };
+    let rho_d = &found["quantities"][0];
+    println!("{budgets} budgets, rho_d {} between over within", ratio(rho_d));
+    assert!(budgets > 5 && rho_d["name"] == "rho_d" && ratio(rho_d) > 3.0);
+}

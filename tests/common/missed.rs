@@ -5,12 +5,11 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use brdfit::engine::blocks;
 use brdfit_core::brdf::{ALL, Params};
-use brdfit_core::geometry::{Block, LANES, Sample};
 use brdfit_core::lm::{self, Bounds, Fit, Linearization, Options, Problem};
-use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::{Scan, observe};
+use brdfit_core::residuals::Scan;
 use brdfit_core::search::{self, Candidate, Region, Scene};
 
 use crate::hard_scenes::{Kind, Task, task};
@@ -109,7 +108,7 @@ pub fn thorough(kind: Kind, k: u64) -> f64 {
     let task = task(kind, k);
     let (candidates, starts) = THOROUGH;
     let found = search_in::<f64>(&task, OTHER_SEED, candidates, 0.0).cost;
-    let blocks = blocks::<f64>(&task.samples);
+    let blocks = blocks::<f64>(&task.samples).expect("scenes are valid");
     found.min(brute(&Eq14::<f64>::new(&blocks), &bounds(&task), starts, k))
 }
 
@@ -153,29 +152,13 @@ pub fn line(out: &mut String, name: &str, row: &Row) {
     );
 }
 
-fn blocks<R: Real>(samples: &[Sample<f64>]) -> Vec<Block<R, LANES, 6>> {
-    let mut blocks = vec![Block::EMPTY; samples.len().div_ceil(LANES)];
-    for (place, sample) in samples.iter().enumerate() {
-        let sample = Sample {
-            theta_i: R::of(sample.theta_i),
-            theta_s: R::of(sample.theta_s),
-            delta_phi: R::of(sample.delta_phi),
-            brdf: R::of(sample.brdf),
-            weight: R::of(sample.weight),
-        };
-        let observation = observe::<R, Microfacet<ALL>, 6, 6>(&sample).expect("scenes are valid");
-        blocks[place / LANES].set(place % LANES, &observation);
-    }
-    blocks
-}
-
 fn bounds<R: Real>(task: &Task) -> Bounds<R, 6> {
     let side = |params: &Params<f64>| Params::from_array(params.to_array().map(R::of));
     Eq14::<R>::bounds(&side(&task.lower), &side(&task.upper))
 }
 
 fn search_in<R: Real>(task: &Task, seed: u64, candidates: u32, least: f64) -> Ended {
-    let own = blocks::<R>(&task.samples);
+    let own = blocks::<R>(&task.samples).expect("scenes are valid");
     let watched = Watched {
         scan: Eq14::<R>::new(&own),
         within: least * 1.01,
@@ -185,7 +168,7 @@ fn search_in<R: Real>(task: &Task, seed: u64, candidates: u32, least: f64) -> En
     let found = search::search(&watched, &bounds::<R>(task), seed, candidates, &Options::default());
     let mut cost = found.best.at.cost.f64();
     if size_of::<R>() < size_of::<f64>() {
-        let exact = blocks::<f64>(&task.samples);
+        let exact = blocks::<f64>(&task.samples).expect("scenes are valid");
         let (scan, bounds) = (Eq14::<f64>::new(&exact), bounds::<f64>(task));
         let fit: Fit<f64, 6> = lm::fit(&scan, &bounds, found.best.x.map(R::f64), &Options::default());
         cost = fit.at.cost;

@@ -73,6 +73,17 @@ impl Grid {
     }
 }
 
+/// What stands below a grid whose upper edge is at `top`, and what stands, turned, on its left; the lower edge of both.
+pub fn labels(out: &mut String, grid: &Grid, top: f64, below: &str, left: &str) -> f64 {
+    let bottom = top + grid.total() + BOTTOM;
+    let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
+    svg::text(out, middle, bottom - 12.0, "text-anchor=\"middle\"", below);
+    let centre = bottom - BOTTOM - 0.5 * grid.total() + 0.5 * CAPTION;
+    let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
+    svg::text(out, 18.0, centre, &turned, left);
+    bottom
+}
+
 /// Grid, ticks, labels and border of one panel.
 pub fn frame(out: &mut String, x: &Axis, y: &Axis, left: bool, bottom: bool) {
     let (width, height) = (x.pixels(), y.pixels());

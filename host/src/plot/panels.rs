@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::axis::Axis;
 use super::curve::{self, LnF, curve};
-use super::frame::{BOTTOM, CAPTION, Grid, LEFT, RIGHT, WIDTH, frame};
+use super::frame::{Grid, LEFT, WIDTH, frame, labels};
 use super::marks::{Data, Marks, Panel, thinned};
 use super::svg;
 
@@ -71,24 +71,8 @@ pub fn draw(title: &str, data: &Data, lines: &[Line], top: f64, legend: impl FnO
             }
             body.push_str("</g></g>");
         }
-        bottom += grid.total() + BOTTOM;
-        let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
-        svg::text(
-            &mut body,
-            middle,
-            bottom - 12.0,
-            "text-anchor=\"middle\"",
-            &block.label(),
-        );
-        let centre = bottom - BOTTOM - 0.5 * grid.total() + 0.5 * CAPTION;
-        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
-        svg::text(
-            &mut body,
-            18.0,
-            centre,
-            &turned,
-            &format!("BRDF (sr{})", svg::sup("−1")),
-        );
+        let label = format!("BRDF (sr{})", svg::sup("−1"));
+        bottom = labels(&mut body, &grid, bottom, &block.label(), &label);
     }
     let mut out = String::new();
     svg::open(&mut out, WIDTH, bottom);

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use brdfit_core::geometry::Sample;
 
 use super::axis::Axis;
-use super::frame::{BOTTOM, CAPTION, Grid, LEFT, RIGHT, WIDTH, frame};
+use super::frame::{Grid, WIDTH, frame, labels};
 use super::marks::{Data, Marks, Panel, thinned};
 use super::svg;
 use crate::engine::View;
@@ -50,19 +50,8 @@ pub fn residuals_svg(samples: &[Sample<f64>], view: &View, scale: f64) -> String
             svg::dots(&mut body, thinned(points.collect(), block.limit()).into_iter());
             body.push_str("</g></g>");
         }
-        bottom += grid.total() + BOTTOM;
-        let middle = LEFT + 0.5 * (WIDTH - LEFT - RIGHT);
-        svg::text(
-            &mut body,
-            middle,
-            bottom - 12.0,
-            "text-anchor=\"middle\"",
-            &block.label(),
-        );
-        let centre = bottom - BOTTOM - 0.5 * grid.total() + 0.5 * CAPTION;
-        let turned = format!("text-anchor=\"middle\" transform=\"rotate(-90 18 {centre:.1})\"");
         let label = format!("residual of ln {}", svg::italic("f"));
-        svg::text(&mut body, 18.0, centre, &turned, &label);
+        bottom = labels(&mut body, &grid, bottom, &block.label(), &label);
     }
     let mut out = String::new();
     svg::open(&mut out, WIDTH, bottom);

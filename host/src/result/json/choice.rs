@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::ByName;
+use super::by_name::ByName;
 use crate::analysis::choose::{Candidate, Choice};
 use crate::result::words;
 use crate::terms::term_names;

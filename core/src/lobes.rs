@@ -5,11 +5,13 @@
 mod beckmann;
 mod ggx;
 mod hyper_cauchy;
+mod in_angle;
 mod masking;
 
 pub use beckmann::Beckmann;
 pub use ggx::Ggx;
 pub use hyper_cauchy::HyperCauchy;
+pub use in_angle::InAngle;
 pub use masking::{NoMasking, Smith, VGroove};
 
 use crate::geometry::SampleError;

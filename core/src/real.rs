@@ -100,6 +100,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, each at most 1 ulp up to 16; beyond that within 1e-4 (`f32`) of it, and an angle beyond 1000 counts as 1000.
     fn sin_cos(self) -> (Self, Self);
+    /// Arc tangent, radians.
+    fn atan(self) -> Self;
     /// False for NaN and infinities.
     fn is_finite(self) -> bool;
 
@@ -251,6 +253,9 @@ impl Real for f64 {
         turned(r, sine, cosine, shifted.to_bits())
     }
     #[inline(always)]
+    fn atan(self) -> f64 {
+        libm::atan(self)
+    }
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }
@@ -371,6 +376,9 @@ impl Real for f32 {
         turned(r, sine, cosine, u64::from(shifted.to_bits()))
     }
     #[inline(always)]
+    fn atan(self) -> f32 {
+        libm::atanf(self)
+    }
     fn is_finite(self) -> bool {
         f32::is_finite(self)
     }

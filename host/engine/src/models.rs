@@ -2,7 +2,7 @@
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
 use brdfit_core::formula::Own;
-use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, Masking, NoMasking, Smith, VGroove};
+use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
 
@@ -14,7 +14,7 @@ use crate::simd::{AVX2, AVX512, EVERY};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 17] = [
+pub static MODELS: [Model; 18] = [
     Model {
         name: "beckmann",
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -68,6 +68,11 @@ pub static MODELS: [Model; 17] = [
         whole: whole::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(D | S | A),
         sets: &[],
     },
+    microfacet::<{ D | S | A }, Beckmann, InAngle<VGroove>, 5, 6>(
+        "torrance-sparrow",
+        "Torrance and Sparrow's: a Gaussian of the facets' tilt in radians, V-groove masking, no volume lobe",
+        "Torrance and Sparrow 1967",
+    ),
     microfacet::<{ D | S }, Ggx, Smith, 4, 8>(
         "walter",
         "Walter's reflection of a dielectric: GGX, Smith masking, no volume lobe, kappa = 0; Lambert's floor is added",

@@ -78,6 +78,9 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     ///
     /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
     pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
+        if Self::WEIGHTS_END == 0 {
+            return (*x, squares);
+        }
         let roles = const { propose::roles(&M::PARAMETERS) };
         let (mut least, mut most) = (R::ZERO, R::MAX);
         for k in 0..P {
@@ -105,6 +108,16 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     #[cfg_attr(not(target_os = "none"), inline(always))]
     fn set_weights<const SCALAR: bool>(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
         if candidate.waits == Waits::No {
+            return;
+        }
+        if Self::WEIGHTS_END == 0 {
+            candidate.rank = if SCALAR {
+                self.scalar_cost(&candidate.x)
+            } else {
+                self.inlined_cost(&candidate.x)
+            };
+            candidate.passes += 1;
+            candidate.waits = Waits::No;
             return;
         }
         let x = &mut candidate.x;

@@ -18,7 +18,7 @@
 //! | step within bounds | | `boxqp.rs` | |
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
 //! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |
-//! | models of stray light | [`models::Abg`] and others | `models.rs` | |
+//! | models of stray light and of paints | [`models::Abg`] and others | `models.rs` | |
 //! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
 //! | the same without vectors | | `scalar.rs` | |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |

@@ -1,14 +1,16 @@
-//! Models of polished and stray-light optics: scatter around the specular direction over |beta - beta_0|, the distance in direction cosines, on Lambert's floor.
+//! Models that are not put together from Eq. 5: of polished and stray-light optics, scatter around the specular direction over |beta - beta_0|, the distance in direction cosines, on Lambert's floor; and of paints.
 //!
 //! Each is a [`crate::formula::Formula`], so that its derivatives are exact without being written down.
 
 mod abg;
 mod harvey_shack;
 mod k_correlation;
+mod sandford_robertson;
 
 pub use abg::Abg;
 pub use harvey_shack::HarveyShack;
 pub use k_correlation::{KCorrelation, KCorrelation2};
+pub use sandford_robertson::SandfordRobertson;
 
 use crate::model::{Parameter, Role};
 

@@ -4,7 +4,7 @@ use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAI
 use brdfit_core::formula::Own;
 use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove};
 use brdfit_core::microfacet::Microfacet;
-use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
+use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2, SandfordRobertson};
 
 use crate::Model;
 use crate::compiled::{Compiled, compile, parameters_of, whole};
@@ -14,7 +14,7 @@ use crate::simd::{AVX2, AVX512, EVERY};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 18] = [
+pub static MODELS: [Model; 19] = [
     Model {
         name: "beckmann",
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -77,6 +77,11 @@ pub static MODELS: [Model; 18] = [
         "walter",
         "Walter's reflection of a dielectric: GGX, Smith masking, no volume lobe, kappa = 0; Lambert's floor is added",
         "Walter, Marschner, Li and Torrance 2007, Eq. 20, 33 and 34",
+    ),
+    Model::own::<Own<SandfordRobertson>, 4, 8>(
+        "sandford-robertson",
+        "Sandford and Robertson's for paints: energy that is not emitted goes into a diffuse and an elliptical lobe",
+        "Sandford and Robertson 1985",
     ),
     Model::own::<Own<Abg>, 4, 8>(
         "abg",

@@ -3,11 +3,13 @@
 //! Each is a [`crate::formula::Formula`], so that its derivatives are exact without being written down.
 
 mod abg;
+mod beard_maxwell;
 mod harvey_shack;
 mod k_correlation;
 mod sandford_robertson;
 
 pub use abg::Abg;
+pub use beard_maxwell::BeardMaxwell;
 pub use harvey_shack::HarveyShack;
 pub use k_correlation::{KCorrelation, KCorrelation2};
 pub use sandford_robertson::SandfordRobertson;

@@ -4,7 +4,7 @@ use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAI
 use brdfit_core::formula::Own;
 use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove};
 use brdfit_core::microfacet::Microfacet;
-use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2, SandfordRobertson};
+use brdfit_core::models::{Abg, BeardMaxwell, HarveyShack, KCorrelation, KCorrelation2, SandfordRobertson};
 
 use crate::Model;
 use crate::compiled::{Compiled, compile, parameters_of, whole};
@@ -14,7 +14,7 @@ use crate::simd::{AVX2, AVX512, EVERY};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 19] = [
+pub static MODELS: [Model; 20] = [
     Model {
         name: "beckmann",
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -82,6 +82,11 @@ pub static MODELS: [Model; 19] = [
         "sandford-robertson",
         "Sandford and Robertson's for paints: energy that is not emitted goes into a diffuse and an elliptical lobe",
         "Sandford and Robertson 1985",
+    ),
+    Model::own::<Own<BeardMaxwell>, 7, 8>(
+        "beard-maxwell",
+        "Beard and Maxwell's for paints: a first surface with shadowing over a volume",
+        "Maxwell et al. 1973; Westlund and Meyer 2002, Eq. 10",
     ),
     Model::own::<Own<Abg>, 4, 8>(
         "abg",

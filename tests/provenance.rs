@@ -81,10 +81,18 @@ fn every_document_names_its_files() {
         ),
         (&["converge", &file, "--seeds", "1", "--format", "json"], "/provenance"),
         (&["stability", &file, "--format", "json"], "/provenance"),
+        (&["inspect", &file, "--format", "json"], "/provenance"),
     ] {
         let document = object(&succeed(arguments));
         let provenance = document.pointer(path).unwrap_or_else(|| panic!("{arguments:?}"));
         assert_eq!(provenance["files"][0]["sha256"], SHA256, "{arguments:?}");
+        // Each model of a comparison has bounds of its own, and nothing is searched in an inspection.
+        let bounds = match arguments[0] {
+            "inspect" => continue,
+            "compare" => &document["models"][0]["bounds"],
+            _ => &provenance["bounds"],
+        };
+        assert_eq!(bounds["rho_d"], json!([0.0, 1.0]), "{arguments:?}");
     }
 }
 

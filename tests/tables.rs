@@ -72,6 +72,9 @@ fn azimuths_by_all_their_names() {
         ("note", "phi_rel"),
         ("note", "phi_diff"),
         ("note", "azimuth"),
+        ("note", "azimut [deg]"),
+        ("note", "varphi_r"),
+        ("note", "phi_r - phi_i"),
     ] {
         let renamed = text.replace("phi_in", incidence).replace("phi_out", scattering);
         assert_f02(&fit(&[&write(&folder, "scan.csv", renamed)]));
@@ -111,6 +114,7 @@ fn columns_that_could_matter_are_refused_or_named() {
         "theta_h",
         "filter wavelength centre",
         "polariser position",
+        "incident_pol",
         "sample batch",
         "x (rad)",
         "units of signal",
@@ -262,6 +266,19 @@ fn values_in_percent_and_in_no_unit_of_a_brdf() {
             "{head}: {message}"
         );
     }
+    // Of what R is the percentage, a person must say.
+    let file = write(&folder, "scan.csv", text.replace("BRF (%)", "R (%)"));
+    assert!(fail(&["fit", &file]).contains("--quantity brf"));
+    assert_eq!(fit(&[&file, "--quantity", "brf"])["parameters"], right["parameters"]);
+    // A mark where there was no measurement is no value.
+    let file = write(&folder, "scan.csv", format!("{text}45,81,1e30\n"));
+    let message = fail(&["fit", &file]);
+    assert!(
+        message.contains(":83:3: ") && message.contains("--max-value 1e30"),
+        "{message}"
+    );
+    let found = fit(&[&file, "--max-value", "1e30"]);
+    assert_eq!(found["left_out"][0]["samples"], 1);
     let unit = |unit: &str| {
         let rows: String = text.lines().skip(1).map(|row| format!("{row},{unit}\n")).collect();
         write(&folder, "unit.csv", format!("theta_i,theta_s,brf,unit\n{rows}"))
@@ -373,6 +390,34 @@ fn heads_and_numbers_of_many_hands() {
             body.to_string(),
             &[],
         ),
+        // Remarks of instruments are no names, whatever stands in them.
+        (
+            "Instrument: none\nWavelength: 632.8 nm\nPolarization: s\ntheta_i,theta_s,brdf\n",
+            body.to_string(),
+            &[],
+        ),
+        (
+            "Wavelength,632.8 nm,\nDetector angle,20 deg,\ntheta_i,theta_s,brdf\n",
+            body.to_string(),
+            &[],
+        ),
+        ("Columns: theta_i, theta_s, brdf\n", body.to_string(), &[]),
+        (
+            "[Header]\nFile=a.dat\n[Data]\ntheta_i,theta_s,brdf\n",
+            body.to_string(),
+            &[],
+        ),
+        ("[theta_i],[theta_s],[brdf]\n", body.to_string(), &[]),
+        ("theta_i:deg,theta_s:deg,brdf:1/sr\n", body.to_string(), &[]),
+        (
+            "incidence angle in deg,scatter angle in deg,BRDF in 1/sr\n",
+            body.to_string(),
+            &[],
+        ),
+        ("theta_i|theta_s|brdf\n", body.replace(',', "|"), &[]),
+        // Delimiters at the ends of rows, and a dash for a minus sign.
+        ("theta_i,theta_s,brdf\n", body.replace('\n', ",,\n"), &[]),
+        ("theta_i,theta_s,brdf\n", body.replace('-', "\u{2013}"), &[]),
         ("", body.to_string(), &["--columns", "theta_i=1,theta_s=2,brdf=3"]),
         (
             "Alpha,Beta,Reading\n",
@@ -388,6 +433,18 @@ fn heads_and_numbers_of_many_hands() {
         let file = write(&folder, "scan.csv", format!("{head}{body}"));
         let found = fit(&[&[file.as_str()], options].concat());
         assert_eq!(found["parameters"], right["parameters"], "{head}");
+    }
+    // What stands where there is no number is left out with the row, if that is asked for.
+    for missing in ["", "NaN", "N/A", "-", "#DIV/0!", "null"] {
+        let file = write(
+            &folder,
+            "scan.csv",
+            format!("theta_i,theta_s,brdf\n{body}45,81,{missing}\n"),
+        );
+        assert!(fail(&["fit", &file]).contains("--drop-invalid"), "{missing}");
+        let found = fit(&[&file, "--drop-invalid"]);
+        assert_eq!(found["parameters"], right["parameters"], "{missing}");
+        assert_eq!(found["left_out"][0]["samples"], 1, "{missing}");
     }
     let file = write(&folder, "scan.csv", body);
     let message = fail(&["fit", &file]);
@@ -481,6 +538,10 @@ fn uncertainties_and_their_coverage() {
         ("U_BRDF (k = 2) [1/sr]", 0.04, &[]),
         ("std", 0.02, &[]),
         ("expanded uncertainty", 0.06, &["--coverage", "3"]),
+        ("U95", 0.04, &["--coverage", "2"]),
+        ("2 sigma", 0.04, &[]),
+        ("u_c", 0.02, &[]),
+        ("+/-", 0.02, &[]),
     ] {
         let found = chi2(head, &|f| factor * f, options);
         assert!((found / right - 1.0).abs() < 1e-9, "{head}: {found} {right}");
@@ -490,9 +551,11 @@ fn uncertainties_and_their_coverage() {
         // The deviations above are parts of the measured f, and weigh with the fitted one.
         assert!((found / right - 1.0).abs() < 0.01, "{head}: {found} {right}");
     }
-    let message = fail(&["fit", &table("U", &|f| 0.04 * f)]);
-    assert!(
-        message.contains("coverage factor") && message.contains("--coverage"),
-        "{message}"
-    );
+    for head in ["U", "U95", "CI 95"] {
+        let message = fail(&["fit", &table(head, &|f| 0.04 * f)]);
+        assert!(
+            message.contains("coverage factor") && message.contains("--coverage"),
+            "{head}: {message}"
+        );
+    }
 }

@@ -1,5 +1,6 @@
 //! The fit of one measured scan, with all that follows from it.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use brdfit_core::geometry::Sample;
@@ -170,17 +171,20 @@ pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Err
 }
 
 /// The samples that were fitted, and all that was left out.
-fn without_outliers(measurement: &Measurement, outcome: &Outcome) -> (Vec<Sample<f64>>, Vec<LeftOut>) {
-    let (mut samples, mut left_out) = (measurement.samples.clone(), measurement.left_out.clone());
-    if let Some(robust) = &outcome.robust {
-        let mut counts = left_out::Counts::default();
-        for &outlier in robust.outliers.iter().rev() {
-            let theta_i = samples.remove(outlier).theta_i.to_degrees();
-            counts.add(left_out::Reason::Outlier, rounded(theta_i));
-        }
-        left_out.extend(counts.list());
+fn without_outliers<'a>(measurement: &'a Measurement, outcome: &Outcome) -> (Cow<'a, [Sample<f64>]>, Vec<LeftOut>) {
+    let (all, mut left_out) = (&measurement.samples, measurement.left_out.clone());
+    let Some(robust) = &outcome.robust else {
+        return (Cow::Borrowed(all), left_out);
+    };
+    let mut kept = vec![true; all.len()];
+    let mut counts = left_out::Counts::default();
+    for &outlier in robust.outliers.iter().rev() {
+        kept[outlier] = false;
+        counts.add(left_out::Reason::Outlier, rounded(all[outlier].theta_i.to_degrees()));
     }
-    (samples, left_out)
+    left_out.extend(counts.list());
+    let kept = all.iter().zip(kept).filter(|(_, kept)| *kept);
+    (kept.map(|(sample, _)| *sample).collect(), left_out)
 }
 
 fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {

@@ -104,7 +104,9 @@ fn text(measurement: &Measurement, choice: &Choice) -> String {
 fn json(measurement: &Measurement, choice: &Choice) -> String {
     let candidates = choice.candidates.iter();
     let models: Vec<_> = candidates
-        .map(|Candidate { outcome, criteria, .. }| {
+        .map(|one| {
+            let (outcome, criteria) = (&one.outcome, &one.criteria);
+            let bounds = |place: usize| [one.options.lower[place], one.options.upper[place]];
             json!({
                 "model": outcome.model.name,
                 "mse2": outcome.mse2,
@@ -113,6 +115,7 @@ fn json(measurement: &Measurement, choice: &Choice) -> String {
                 "bic": criteria.bic,
                 "minima": outcome.minima.len(),
                 "parameters": ByName::new(outcome.model, |place| outcome.params[place]),
+                "bounds": ByName::new(outcome.model, bounds),
             })
         })
         .collect();
@@ -121,6 +124,8 @@ fn json(measurement: &Measurement, choice: &Choice) -> String {
         "samples": measurement.samples.len(),
         "model": choice.chosen().outcome.model.name,
         "criterion": "bic",
+        "seed": choice.chosen().options.seed,
+        "starts": choice.chosen().options.starts(),
         "models": models,
         "provenance": provenance(&measurement.about, None),
     });

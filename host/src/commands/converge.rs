@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let text = match arguments.output.format {
         TableFormat::Text => write::text(&studies, arguments.seeds),
         TableFormat::Json => {
-            let read = measurement.as_ref().map(|read| provenance(&read.about, None));
+            let read = measurement.as_ref().map(|read| provenance(&read.about, Some(&options)));
             write::json(&studies, arguments.seeds, read)
         }
         TableFormat::Csv => write::csv(&studies),

@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             };
             let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;
-            let provenance = provenance(&measurement.about, None);
+            let provenance = provenance(&measurement.about, Some(&options));
             let text = match arguments.output.format {
                 Format::Text => text::write(std::slice::from_ref(&case)) + &text::verdict(&case),
                 Format::Json => json(&Document {

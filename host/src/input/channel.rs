@@ -5,6 +5,7 @@ use super::role;
 use super::unit::Unit;
 use super::units::Quantity;
 use super::wavelength;
+use crate::error::{Error, shown};
 
 /// The name without the quantity in front of it, and that quantity.
 fn tag(plain: &str) -> (&str, Quantity) {
@@ -29,10 +30,11 @@ pub fn is(head: &Head) -> bool {
     let length = matches!(head.unit, Some(Unit::Length(_) | Unit::PerCm));
     let number = tag.strip_suffix("nm").unwrap_or(tag).parse::<f64>();
     // Without a unit and a name, a number is a wavelength if it can be one in nanometres or micrometres.
+    let is_angle = matches!(head.unit, Some(Unit::Deg | Unit::Rad));
     let wavelength = number.is_ok_and(|number| {
         length
-            || prefixed && number.is_finite()
-            || wavelength::nanometres(number, None).is_ok() && (0.2..3e4).contains(&number)
+            || !is_angle && prefixed && number.is_finite()
+            || !is_angle && wavelength::nanometres(number, None).is_ok() && (0.2..3e4).contains(&number)
     });
     matches!(tag, "r" | "g" | "b" | "red" | "green" | "blue" | "y") && (prefixed || tag != "y")
         || prefixed
@@ -41,6 +43,22 @@ pub fn is(head: &Head) -> bool {
                 "s" | "p" | "spol" | "ppol" | "x" | "z" | "ss" | "sp" | "ps" | "pp" | "unpolarised" | "unpolarized"
             )
         || wavelength
+}
+
+/// Refuses a channel in percent whose name does not say of what.
+///
+/// # Errors
+/// It is `R (%)`, which is most often a reflectance.
+pub fn refuse_percent(head: &Head) -> Result<(), Error> {
+    let is_named = role::quantity(&head.plain).is_some() || tag(&head.plain).0.len() < head.plain.len();
+    if head.unit != Some(Unit::Percent) || is_named {
+        return Ok(());
+    }
+    Err(Error::new(format!(
+        "'{}' is in percent, and may be a reflectance factor or a BRDF",
+        shown(&head.text)
+    ))
+    .help("say which: --quantity brf, or --quantity brdf"))
 }
 
 /// What a channel's values are.

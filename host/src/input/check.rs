@@ -51,11 +51,12 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
                 counts.add(Reason::NotValid, degrees(row, &read_as));
                 faults.add(row.line, column, what);
                 faults.near_retro += usize::from(is_near_retro(row, &read_as));
+                faults.negative += usize::from(row.value < 0.0);
             }
         }
     }
     if faults.count > 0 && !options.drop_invalid {
-        return Err(faults.error());
+        return Err(faults.error(count));
     }
     if samples.is_empty() {
         return Err(Error::new(format!("none of the {count} rows is a valid sample"))
@@ -292,6 +293,7 @@ struct Faults {
     count: usize,
     /// How many are close to the direction of incidence, where a detector blocks the beam.
     near_retro: usize,
+    negative: usize,
     first: Option<(u64, Option<u64>, String)>,
     lines: Vec<String>,
 }
@@ -306,8 +308,8 @@ impl Faults {
         self.count += 1;
     }
 
-    /// One line for all of them, at the place of the first.
-    fn error(self) -> Error {
+    /// One line for all of them, of so many rows, at the place of the first.
+    fn error(self, rows: usize) -> Error {
         let Some((line, column, mut what)) = self.first else {
             return Error::new("no row is at fault");
         };
@@ -316,7 +318,9 @@ impl Faults {
             let lines = self.lines.join(", ");
             what += &format!(" ({} rows are not valid, on lines {lines}{more})", self.count);
         }
-        let help = if 2 * self.near_retro > self.count {
+        let help = if 2 * self.negative > rows {
+            "most values are negative: are they logarithms? say so with --quantity ln-brdf or log10-brdf"
+        } else if 2 * self.near_retro > self.count {
             "most are where a detector blocks the incident beam: use --mask-retro 6, or --drop-invalid to leave such rows out"
         } else {
             "use --drop-invalid to leave such rows out"

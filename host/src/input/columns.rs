@@ -142,6 +142,9 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     for (column, quantity) in chosen {
         taken[column] = true;
         let single = !several && role::quantity(&heads[column].plain).is_some();
+        if options.columns.is_empty() && options.quantity.is_none() {
+            channel::refuse_percent(&heads[column]).map_err(|error| error.at_column(column as u64 + 1))?;
+        }
         values.push(Value {
             column,
             name: (several || !single && options.columns.is_empty()).then(|| channel::name(&heads[column])),
@@ -302,7 +305,19 @@ impl Finder<'_> {
                 shown(&head.text)
             )
         });
-        Error::new(format!("no column {quantity} among the columns {}{foreign}", some_of(&found))).help(format!(
+        let through = |head: &&Head| {
+            ["btdf", "transmi", "transmittance"]
+                .iter()
+                .any(|name| head.plain.contains(name))
+        };
+        let through = self.heads.iter().find(through).filter(|_| name == "brdf");
+        let through = through.map_or(String::new(), |head| {
+            format!(
+                "; '{}' is of light that goes through, and no reflectance",
+                shown(&head.text)
+            )
+        });
+        Error::new(format!("no column {quantity} among the columns {}{foreign}{through}", some_of(&found))).help(format!(
             "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
         ))
     }

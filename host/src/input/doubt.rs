@@ -10,6 +10,8 @@ use crate::number::shortest;
 const RIGHT_ANGLE: f64 = 1.6;
 /// A reflectance factor that no surface has in all directions.
 const BRIGHTEST: f64 = 2.0;
+/// A BRDF that no surface has: light of 100 nm from a mirror of 1 m goes into 1e-14 sr.
+const MARK: f64 = 1e15;
 /// A scan over fewer degrees may be of a peak alone.
 const WIDE: f64 = 60.0;
 /// Fewer samples say little of all directions.
@@ -28,7 +30,7 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
         unit_of_angles(scan, unit)?;
     }
     full_turn(scan, unit)?;
-    if options.value_unit.is_none() && scan.about.divisor == 1.0 {
+    if options.value_unit.is_none() {
         size_of_values(scan, unit, options)?;
     }
     Ok(())
@@ -141,20 +143,40 @@ fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error
     })
 }
 
-/// Refuses values which, over a wide range of angles, are all brighter than any surface.
+/// Refuses values which, over a wide range of angles, are all brighter than any surface, and marks of no value among others.
 fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result<(), Error> {
     let quantity = options.quantity.unwrap_or(scan.quantity);
     let (mut low, mut high, mut least) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    let mut valid = 0;
-    for row in &scan.rows {
+    let (mut valid, mut mark) = (0, None);
+    let wanted = |row: &&Row| options.max_value.is_none_or(|largest| row.value < largest);
+    for row in scan.rows.iter().filter(wanted) {
         let theta_s = unit.degrees(row.theta_s);
-        if let Ok(brdf) = quantity.brdf(row.value, unit.radians(row.theta_s)) {
+        if let Ok(brdf) = quantity.brdf(row.value / scan.about.divisor, unit.radians(row.theta_s)) {
             (low, high) = (low.min(theta_s), high.max(theta_s));
             least = least.min(brdf * std::f64::consts::PI);
             valid += 1;
+            if brdf >= MARK {
+                mark.get_or_insert(row);
+            }
         }
     }
-    if valid < FEW || !(high - low >= WIDE && least >= BRIGHTEST) {
+    if let Some(row) = mark.filter(|_| least < MARK) {
+        let error = Error::new(format!(
+            "the value is {}, as no surface has: does it stand for none?",
+            shortest(row.value)
+        ))
+        .help(format!(
+            "leave such values out with --max-value {}, or take them as they are with --value-unit plain",
+            shortest(row.value)
+        ));
+        let error = Error {
+            column: scan.places.value,
+            ..error
+        };
+        return Err(if row.line > 0 { error.at_line(row.line) } else { error });
+    }
+    // What is known to be in percent is right.
+    if valid < FEW || scan.about.divisor != 1.0 || !(high - low >= WIDE && least >= BRIGHTEST) {
         return Ok(());
     }
     let what = match quantity {

@@ -109,8 +109,13 @@ fn pairs(remark: &str) -> Vec<(&str, &str)> {
     if let Some(pair) = cut(remark) {
         return vec![pair];
     }
-    // A cell each, as spreadsheets write them.
-    let cells = remark.split_once(['\t', ';', ',']);
+    // A cell each, as spreadsheets write them, or a number after the name.
+    let number = || {
+        let at = remark.find(|c: char| c.is_ascii_digit() || "+-−".contains(c))?;
+        let (key, value) = remark.split_at(at);
+        Some((key.strip_suffix(char::is_whitespace)?, value)).filter(|(key, _)| !key.trim().is_empty())
+    };
+    let cells = remark.split_once(['\t', ';', ',']).or_else(number);
     cells
         .map(|(key, value)| (key.trim(), value.trim_matches(['\t', ';', ',', ' '])))
         .into_iter()
@@ -135,7 +140,22 @@ fn quantity(value: &str) -> Option<(f64, Option<Unit>)> {
     Some((text, Some(Unit::parse(unit)?)))
 }
 
-/// The angle of incidence in a file's name, degrees: after `aoi`, `theta_i`, `inc` and the like, before `deg`, or the only number.
+/// The angle in a text such as `20°`, `20 deg`, `AOI=20` or `theta_i: 20 deg`, degrees.
+pub fn angle_in(text: &str) -> Option<f64> {
+    let (head, value) = pairs(text)
+        .first()
+        .map_or((None, text), |(key, value)| (Some(Head::new(key)), *value));
+    let of_incidence = head.as_ref().is_none_or(|head| role::role(head) == Role::ThetaI);
+    let (number, unit) = quantity(value).filter(|_| of_incidence)?;
+    match head.and_then(|head| head.unit).or(unit) {
+        None | Some(Unit::Deg) => Some(number).filter(|number| number.is_finite()),
+        _ => None,
+    }
+}
+
+/// The angle of incidence in a file's name, degrees: after `aoi`, `theta_i`, `inc` and the like, before `deg`, or the only number that stands apart.
+///
+/// A number behind letters, one with a zero in front and one below 5 are more often counted: `paint7`, `scan_01`, `run 2`.
 ///
 /// # Errors
 /// There are several such numbers.
@@ -168,7 +188,7 @@ pub fn theta_i_of_name(file: &str) -> Result<Option<f64>, Error> {
         if let Ok(number) = number.parse::<f64>() {
             if keyed(key) || keyed(&two) || ["deg", "°", "grad"].iter().any(|unit| after.starts_with(unit)) {
                 tagged.push(number);
-            } else if !other_unit {
+            } else if !other_unit && !is_counted(&rest[..begin], &rest[begin..end], number) {
                 all.push(number);
             }
         }
@@ -188,6 +208,12 @@ pub fn theta_i_of_name(file: &str) -> Result<Option<f64>, Error> {
         ([], numbers) => several(numbers),
         (numbers, _) => several(numbers),
     }
+}
+
+/// True of a number in a name that counts files or samples.
+fn is_counted(before: &str, text: &str, number: f64) -> bool {
+    let glued = before.ends_with(char::is_alphabetic);
+    glued || text.starts_with('0') && text.len() > 1 && !text.starts_with("0.") || number > 0.0 && number < 5.0
 }
 
 /// What is shown of an angle of incidence that a file does not have in a column.
@@ -221,6 +247,8 @@ mod tests {
             "% angle of incidence (deg): 20",
             "\"Incident angle [deg]\",20,,",
             "Incident Angle\t20",
+            "Incident angle 20 deg",
+            "# AOI 20",
             "! wavelength: 550 nm; AOI: 20 deg",
             "theta_i=0.3490658503988659 rad",
             "Incidence angle: +20,0 deg",
@@ -272,11 +300,17 @@ mod tests {
             ("paint.csv", None),
             ("paint_550nm.csv", None),
             ("run2026.csv", None),
+            ("paint7.csv", None),
+            ("scan_026.csv", None),
+            ("sample 3.csv", None),
+            ("paint7_20.csv", Some(20.0)),
+            ("aoi3.csv", Some(3.0)),
+            ("scan_0.csv", Some(0.0)),
         ] {
             assert_eq!(theta_i_of_name(name).unwrap(), angle, "{name}");
         }
         assert!(
-            theta_i_of_name("paint7_20.csv")
+            theta_i_of_name("paint_7_20.csv")
                 .unwrap_err()
                 .to_string()
                 .contains("--theta-i")

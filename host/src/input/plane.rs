@@ -9,6 +9,10 @@ use crate::engine::instrument::signed;
 
 /// Scattering angle in degrees, positive forward, of a sample in the plane of incidence; none of another.
 pub fn signed_theta_s(sample: &Sample<f64>) -> Option<f64> {
+    // Most samples are of a scan in plane.
+    if sample.delta_phi == f64::PI {
+        return Some(sample.theta_s.to_degrees());
+    }
     signed(sample).map(f64::to_degrees)
 }
 
@@ -24,10 +28,11 @@ pub fn from_specular(sample: &Sample<f64>) -> f64 {
 /// The samples by incident angle, radians, equal to a hundredth of a degree; ascending.
 pub fn by_angle(samples: &[Sample<f64>]) -> Vec<(f64, Vec<&Sample<f64>>)> {
     let mut groups = BTreeMap::new();
-    for sample in samples {
-        let key = (sample.theta_i.to_degrees() * 100.0).round() as i64;
-        let group = groups.entry(key).or_insert_with(|| (sample.theta_i, Vec::new()));
-        group.1.push(sample);
+    for run in samples.chunk_by(|a, b| a.theta_i == b.theta_i) {
+        let theta_i = run[0].theta_i;
+        let key = (theta_i.to_degrees() * 100.0).round() as i64;
+        let group = groups.entry(key).or_insert_with(|| (theta_i, Vec::new()));
+        group.1.extend(run);
     }
     groups.into_values().collect()
 }

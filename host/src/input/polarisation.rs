@@ -8,8 +8,10 @@ use brdfit_core::real::Real;
 pub fn name(text: &str) -> String {
     let plain: String = text.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     match plain.as_str() {
-        "s" | "spol" | "spolarised" | "spolarized" | "te" | "perpendicular" | "senkrecht" | "ss" => "s".to_string(),
-        "p" | "ppol" | "ppolarised" | "ppolarized" | "tm" | "parallel" | "pp" => "p".to_string(),
+        "s" | "spol" | "spolarised" | "spolarized" | "te" | "perpendicular" | "perp" | "senkrecht" | "ss" => {
+            "s".to_string()
+        }
+        "p" | "ppol" | "ppolarised" | "ppolarized" | "tm" | "parallel" | "par" | "para" | "pp" => "p".to_string(),
         _ => text.trim().to_string(),
     }
 }

@@ -26,7 +26,15 @@ pub fn refuse(scan: &RawScan, sheet: &Sheet, columns: &Columns, tells_apart: &[u
     let mut first = None;
     let mut count = 0;
     // Rows that are no samples are another fault, which is said of them later.
-    let is_sample = |row: &&Row| row.value.is_finite() && (row.value > 0.0 || scan.quantity.is_logarithm().is_some());
+    let has_angles = |row: &Row| {
+        // The angle of incidence of a whole file is not known yet.
+        let theta_i = columns.theta_i.map(|_| row.theta_i);
+        let angles = [theta_i, Some(row.theta_s), row.delta_phi];
+        angles.into_iter().flatten().all(f64::is_finite)
+    };
+    let is_sample = |row: &&Row| {
+        row.value.is_finite() && has_angles(row) && (row.value > 0.0 || scan.quantity.is_logarithm().is_some())
+    };
     for row in scan.rows.iter().filter(is_sample) {
         let known = *seen.entry(direction(row)).or_insert(row);
         if known.value != row.value {

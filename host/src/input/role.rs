@@ -96,7 +96,7 @@ enum Word {
 }
 
 /// Words that names of angles are made of; those of one letter count only beside the name of an angle.
-const WORDS: [(&str, Word); 94] = [
+const WORDS: [(&str, Word); 98] = [
     ("theta", Word::Polar),
     ("th", Word::Polar),
     ("zenith", Word::Polar),
@@ -106,9 +106,12 @@ const WORDS: [(&str, Word); 94] = [
     ("ang", Word::Angle),
     ("phi", Word::Azimuth),
     ("ph", Word::Azimuth),
+    ("varphi", Word::Azimuth),
     ("azimuthal", Word::Azimuth),
     ("azimuth", Word::Azimuth),
+    ("azimut", Word::Azimuth),
     ("azim", Word::Azimuth),
+    ("azm", Word::Azimuth),
     ("azi", Word::Azimuth),
     ("az", Word::Azimuth),
     ("incidence", Word::Incidence),
@@ -183,6 +186,7 @@ const WORDS: [(&str, Word); 94] = [
     ("delta", Word::Difference),
     ("relative", Word::Difference),
     ("rel", Word::Difference),
+    ("minus", Word::Difference),
     ("difference", Word::Difference),
     ("diff", Word::Difference),
     ("of", Word::Filler),
@@ -244,18 +248,18 @@ fn word(plain: &str) -> Option<Role> {
 
 /// The role of an angle whose name is made of [`WORDS`] alone.
 fn angle(head: &Head) -> Option<Role> {
-    let mut words = Vec::new();
     // A `d` in front is a difference, and behind it the half angle of another parameterisation.
     let (plain, difference) = match head.plain.strip_prefix('d') {
         Some(rest) if rest.starts_with("phi") || rest.starts_with("az") || rest.starts_with("theta") => (rest, true),
         _ => (head.plain.as_str(), false),
     };
-    if !spell(plain, &mut words) {
-        return None;
-    }
+    let words = spell(plain)?;
     let has = |word: Word| words.contains(&word);
     let (incidence, scattering) = (has(Word::Incidence), has(Word::Scattering));
-    let difference = difference || has(Word::Difference);
+    // As in `phi_r - phi_i`.
+    let is_two = words.iter().filter(|&&word| word == Word::Azimuth).count() == 2;
+    let minus = is_two && incidence && scattering && head.text.contains(['-', '\u{2212}', '\u{2013}']);
+    let difference = difference || minus || has(Word::Difference);
     if has(Word::Azimuth) {
         return match (has(Word::Polar), difference, incidence, scattering) {
             (true, ..) => None,
@@ -268,6 +272,8 @@ fn angle(head: &Head) -> Option<Role> {
     }
     let named = has(Word::Polar) || has(Word::Angle);
     let in_angles = matches!(head.unit, Some(Unit::Deg | Unit::Rad));
+    // `scatter angle in deg` says in which unit, and not of which direction.
+    let incidence = incidence && !(scattering && head.unit.is_some() && head.plain.ends_with("in"));
     match (difference, incidence, scattering) {
         _ if !named && (!in_angles || head.plain.len() < 3) => None,
         (true, ..) | (_, true, true) => None,
@@ -277,21 +283,27 @@ fn angle(head: &Head) -> Option<Role> {
     }
 }
 
-/// Is the text a row of words, and of which kinds?
-fn spell(text: &str, words: &mut Vec<Word>) -> bool {
-    if text.is_empty() {
-        return !words.is_empty();
+/// The kinds of the words that the text is a row of, if it is one: from its end, so that no name takes long.
+fn spell(text: &str) -> Option<Vec<Word>> {
+    // At each place the word that begins there, if the rest is a row of words.
+    let mut words: Vec<Option<(&str, Word)>> = vec![None; text.len()];
+    for at in (0..text.len()).filter(|&at| text.is_char_boundary(at)).rev() {
+        let fits = |(word, _): &&(&str, Word)| {
+            let end = at + word.len();
+            text[at..].starts_with(word) && (end == text.len() || words[end].is_some())
+        };
+        words[at] = WORDS.iter().find(fits).copied();
     }
-    for (word, kind) in WORDS {
-        if let Some(rest) = text.strip_prefix(word) {
-            words.push(kind);
-            if spell(rest, words) {
-                return true;
-            }
-            words.pop();
+    let mut kinds = Vec::new();
+    let mut at = 0;
+    while let Some((word, kind)) = *words.get(at)? {
+        kinds.push(kind);
+        at += word.len();
+        if at == text.len() {
+            return Some(kinds);
         }
     }
-    false
+    None
 }
 
 /// What an unknown column looks like.
@@ -315,7 +327,8 @@ fn look(head: &Head) -> Look {
     ];
     let has = |names: &[&str]| names.iter().any(|name| head.plain.contains(name));
     let is = |names: &[&str]| names.contains(&head.plain.as_str());
-    if has(&["polaris", "polariz"]) {
+    let short = head.plain.ends_with("pol") || head.plain.starts_with("pol") && !head.plain.starts_with("polar");
+    if has(&["polaris", "polariz"]) || short {
         return Look::Polarisation;
     }
     if ["sigma", "std", "u", "unc", "err"]
@@ -386,8 +399,16 @@ mod tests {
         all(
             Role::DeltaPhi,
             "raa, RAA [deg], relative_azimuth, delta_azimuth, azimuth_difference, phi_rel, \
-             phi_diff, delta_phi, dphi, Δφ, rel. azimuth, relative azimuth angle, d_phi",
+             phi_diff, delta_phi, dphi, Δφ, phi_r - phi_i, phi_r_minus_phi_i, rel. azimuth, relative azimuth angle, d_phi",
         );
+    }
+
+    #[test]
+    fn no_name_takes_long() {
+        // `azi` is two words, or one: as many ways as there are subsets of the repetitions.
+        let name = "azi".repeat(100_000) + "q";
+        assert_eq!(super::role(&Head::new(&name)), Role::Unknown(Look::Other));
+        assert_eq!(super::role(&Head::new(&"azi".repeat(100_000))), Role::Phi);
     }
 
     #[test]
@@ -419,7 +440,7 @@ mod tests {
         all(Role::Unknown(Look::Sample), "sample batch, name, coating");
         all(
             Role::Unknown(Look::Polarisation),
-            "polarizer_deg, detector polarisation",
+            "polarizer_deg, detector polarisation, incident_pol, pol_in",
         );
         all(
             Role::Unknown(Look::Other),

@@ -15,9 +15,11 @@ pub enum Decimal {
     Comma,
 }
 
-/// What stands between the cells of a table: a tab, a semicolon or a comma if the line has one, else spaces.
+/// What stands between the cells of a table: a tab, a semicolon, a comma or a bar if the line has one, else spaces.
 pub fn delimiter(line: &str) -> Option<u8> {
-    [b'\t', b';', b','].into_iter().find(|&c| line.as_bytes().contains(&c))
+    [b'\t', b';', b',', b'|']
+        .into_iter()
+        .find(|&c| line.as_bytes().contains(&c))
 }
 
 /// The lines of a text with their numbers, from 1, and where they begin; any kind of line ends is fine.
@@ -190,16 +192,31 @@ pub fn number_in(cells: &[&str], column: usize, decimal: &mut Decimal) -> Result
             _ => Decimal::Unknown,
         };
     }
-    parse(cell, *decimal).ok_or_else(|| {
+    if let Some(number) = parse(cell, *decimal) {
+        return Ok(number);
+    }
+    if is_missing(cell) && column < cells.len() {
+        return Ok(f64::NAN);
+    }
+    Err({
         let help = match decimal {
             Decimal::Comma if cell.contains('.') => "other numbers have a decimal comma; write all in one way",
             _ if cell.contains(',') => "write numbers with a decimal point",
-            _ => "write a number, or NaN and use --drop-invalid if there is no value",
+            _ => "write a number, or leave the cell empty and use --drop-invalid if there is no value",
         };
         Error::new(format!("'{}' is not a number", shown(cell)))
             .at_column(column as u64 + 1)
             .help(help)
     })
+}
+
+/// True of what people and spreadsheets write where there is no number.
+fn is_missing(cell: &str) -> bool {
+    const WORDS: [&str; 16] = [
+        "", "-", "--", "---", "*", "na", "n/a", "n.a.", "null", "none", "missing", "#n/a", "#value!", "#div/0!",
+        "#num!", "#ref!",
+    ];
+    WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }
 
 /// A number as people and programs write it.
@@ -217,8 +234,8 @@ pub fn parse(cell: &str, decimal: Decimal) -> Option<f64> {
     if !point {
         return None;
     }
-    // A true minus sign, and the exponent of Fortran.
-    let spelt = cell.replace(',', ".").replace('\u{2212}', "-");
+    // A true minus sign or a dash, and the exponent of Fortran.
+    let spelt = cell.replace(',', ".").replace(['\u{2212}', '\u{2013}'], "-");
     spelt.parse().or_else(|_| spelt.replace(['D', 'd'], "e").parse()).ok()
 }
 

@@ -60,7 +60,7 @@ impl<'a> Sheet<'a> {
             first.get_or_insert((line, start));
             let delimiter = given.or_else(|| rows::delimiter(line.text));
             let cells = rows::split(line.text, delimiter);
-            if is_head(&cells) {
+            if is_head(&cells) && !is_pair(&cells) {
                 return Ok(Sheet::with_heads(text, start, line, &cells, delimiter, &above));
             }
             let found = match given {
@@ -186,6 +186,11 @@ impl<'a> Sheet<'a> {
     pub fn for_each(&self, mut take: impl FnMut(u64, &[&str]) -> Result<(), Error>) -> Result<(), Error> {
         rows::each(self.rows, self.delimiter, |line, cells| {
             let line = self.first_line + line - 1;
+            // Delimiters at the end of a row, which the heads do not have, part nothing.
+            let cells = match cells.split_at_checked(self.heads.len()) {
+                Some((cells, more)) if more.iter().all(|cell| cell.is_empty()) => cells,
+                _ => cells,
+            };
             if cells.len() != self.heads.len() {
                 let (have, width) = (cells.len(), self.heads.len());
                 return Err(Error::new(format!("the row has {have} cells, the header {width}"))
@@ -238,6 +243,33 @@ fn is_head(cells: &[&str]) -> bool {
         }
 }
 
+/// True of a remark such as `Wavelength: 632.8 nm` or, in cells, `Wavelength,632.8 nm`, and of what goes before names, such as `Columns: theta_i, theta_s, brdf`.
+fn is_pair(cells: &[&str]) -> bool {
+    // A unit may stand behind a colon, as in `theta_i:deg`.
+    let has_key = |cell: &&str| {
+        let (name, _) = cell.split_at(cell.find(['[', '(']).unwrap_or(cell.len()));
+        name.split_once(':')
+            .is_some_and(|(_, behind)| Unit::parse(behind).is_none())
+    };
+    let mut filled = cells.iter().filter(|cell| !cell.is_empty());
+    let (key, value, more) = (filled.next(), filled.next(), filled.next());
+    cells.first().is_some_and(has_key)
+        || matches!((key, value, more), (Some(key), Some(value), None) if is_fact(key, value))
+        || cells.len() > 2 && !cells.iter().any(|cell| is_table(&Head::new(cell)))
+}
+
+/// True of the name of what is the same in all rows, with a number or a word behind it.
+fn is_fact(key: &str, value: &str) -> bool {
+    let [key, value] = [key, value].map(|text| role::role(&Head::new(text)));
+    !matches!(key, Role::ThetaS | Role::Theta | Role::Value(_))
+        && !matches!(value, Role::ThetaS | Role::Theta | Role::Value(_))
+}
+
+/// True of what every table has: scattering angles, or values.
+fn is_table(head: &Head) -> bool {
+    matches!(role::role(head), Role::ThetaS | Role::Theta | Role::Value(_))
+}
+
 /// True of a row of numbers; with `only`, of nothing else.
 fn is_row(cells: &[&str], only: bool) -> bool {
     let numbers = cells.iter().filter(|cell| is_number(cell)).count();
@@ -251,7 +283,7 @@ fn is_row(cells: &[&str], only: bool) -> bool {
 
 /// The delimiter with which a line is a row of numbers, spaces being none.
 fn delimiter_of_row(line: &str) -> Option<Option<u8>> {
-    const ALL: [Option<u8>; 4] = [Some(b'\t'), Some(b';'), Some(b','), None];
+    const ALL: [Option<u8>; 5] = [Some(b'\t'), Some(b';'), Some(b','), Some(b'|'), None];
     let present = |delimiter: &Option<u8>| delimiter.is_none_or(|mark| line.as_bytes().contains(&mark));
     let with = |only| {
         ALL.into_iter()

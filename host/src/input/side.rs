@@ -21,7 +21,9 @@ pub fn other_side(samples: &[Sample<f64>]) -> Option<f64> {
     for (theta_i, group) in plane::by_angle(samples) {
         let near = |centre: f64| {
             let inside = |sample: &&&Sample<f64>| {
-                plane::signed_theta_s(sample).is_some_and(|angle| (angle - centre).abs() <= WINDOW)
+                // Most samples are far away whatever their side.
+                (sample.theta_s.to_degrees().abs() - centre.abs()).abs() <= WINDOW
+                    && plane::signed_theta_s(sample).is_some_and(|angle| (angle - centre).abs() <= WINDOW)
             };
             let values = group.iter().filter(inside).map(|sample| sample.brdf);
             values.fold(None, |most: Option<f64>, f| Some(most.map_or(f, |most| most.max(f))))

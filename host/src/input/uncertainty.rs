@@ -53,6 +53,8 @@ struct Named {
     relative: bool,
     /// True of a metrologist's U, which is a multiple of the standard deviation.
     expanded: bool,
+    /// The coverage factor in a name such as `2 sigma`.
+    times: Option<f64>,
     factor: bool,
 }
 
@@ -106,6 +108,13 @@ pub fn assign(
 /// The ways in which a name can be read as an uncertainty.
 fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
     let whole = head.plain.as_str();
+    let (times, whole) = match ["1", "2", "3"]
+        .into_iter()
+        .find_map(|times| Some((times, whole.strip_prefix(times)?)))
+    {
+        Some((times, name)) if SIGMA.into_iter().any(|word| name.starts_with(word)) => (times.parse().ok(), name),
+        _ => (None, whole),
+    };
     let strip = |text: &str, word: &str| -> Option<String> {
         let rest = text.strip_prefix(word).or_else(|| text.strip_suffix(word))?;
         Some(plain(rest))
@@ -121,6 +130,7 @@ fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
         of: of.strip_prefix("of").map_or(of.clone(), str::to_string),
         relative,
         expanded,
+        times,
         factor: false,
     };
     let weight = ["weight", "weights"].into_iter().find_map(|word| strip(whole, word));
@@ -128,6 +138,7 @@ fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
         of,
         relative: false,
         expanded: false,
+        times: None,
         factor: true,
     });
     let word = SIGMA.into_iter().find_map(|word| strip(&rest, word));
@@ -139,7 +150,18 @@ fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
             expanded || head.text.contains('U') && !head.text.contains('u'),
         )
     });
-    weight.into_iter().chain(word).chain(letter)
+    // An interval of 95 %, and the combined standard uncertainty.
+    let interval = ["u95", "u0.95", "ci95", "95ci", "ci"]
+        .into_iter()
+        .find_map(|word| strip(&rest, word));
+    let interval = interval.map(|of| named(of, true));
+    let combined = strip(&rest, "uc").map(|of| named(of, expanded));
+    weight
+        .into_iter()
+        .chain(word)
+        .chain(interval)
+        .chain(letter)
+        .chain(combined)
 }
 
 /// Unit and coverage factor of an uncertainty.
@@ -148,7 +170,7 @@ fn kind(head: &Head, named: &Named, value: &Head, column: usize, options: &ReadO
         return Ok(WeightKind::Factor);
     }
     let name = shown(&head.text);
-    let coverage = match head.coverage.or(options.coverage) {
+    let coverage = match head.coverage.or(named.times).or(options.coverage) {
         Some(factor) => factor,
         None if named.expanded => {
             return Err(Error::new(format!(

@@ -145,21 +145,29 @@ impl Unit {
         })
     }
 
-    /// A name without the unit that it ends in, and that unit: after a slash, a space or an underscore, or glued as in `thetadeg`.
+    /// A name without the unit that it ends in, and that unit: after a slash, a colon, a space or an underscore, or glued as in `thetadeg`.
     ///
     /// Units of one or two letters count only after a slash, for they may as well be an index.
     pub fn at_end(name: &str) -> (&str, Option<Unit>) {
         let name = name.trim();
-        for (at, mark) in name.char_indices().filter(|&(_, c)| matches!(c, '/' | ' ' | '_' | ',')) {
+        for (at, mark) in name
+            .char_indices()
+            .filter(|&(_, c)| matches!(c, '/' | ' ' | '_' | ',' | ':'))
+        {
             let (before, after) = (&name[..at], &name[at + mark.len_utf8()..]);
-            let before = before.trim_end_matches([' ', '_', ',', '/']);
+            let before = before.trim_end_matches([' ', '_', ',', '/', ':']);
             let index = after.trim().chars().filter(|c| c.is_alphabetic()).count() <= 1 && mark != '/';
-            if before.is_empty() || (index && !after.contains(['°', 'º', '%', 'Å', 'å'])) || ambiguous(after, mark)
+            if !before.contains(char::is_alphanumeric)
+                || (index && !after.contains(['°', 'º', '%', 'Å', 'å']))
+                || ambiguous(after, mark)
             {
                 continue;
             }
             if let Some(unit) = Unit::parse(after) {
-                return (before, Some(unit));
+                // `theta in deg` may be the angle of incidence.
+                let is_angle = matches!(unit, Unit::Deg | Unit::Rad);
+                let shorter = before.strip_suffix(" in").filter(|_| !is_angle);
+                return (shorter.unwrap_or(before).trim_end(), Some(unit));
             }
         }
         const GLUED: [&str; 8] = ["degrees", "degree", "deg", "°", "radians", "radian", "%", "nm"];
@@ -204,6 +212,10 @@ mod tests {
             ("theta_s_deg", "theta_s", Some(Unit::Deg)),
             ("thetasdeg", "thetas", Some(Unit::Deg)),
             ("brdf per sr", "brdf", Some(Unit::PerSr)),
+            ("brdf:1/sr", "brdf", Some(Unit::PerSr)),
+            ("BRDF in 1/sr", "BRDF", Some(Unit::PerSr)),
+            ("wavelength in nm", "wavelength", Some(Unit::Length(1.0))),
+            ("theta in deg", "theta in", Some(Unit::Deg)),
             ("lambda/m", "lambda", Some(Unit::Length(1e9))),
             ("wavenumber cm^-1", "wavenumber", Some(Unit::PerCm)),
             ("0.55um", "0.55", Some(Unit::Length(1e3))),

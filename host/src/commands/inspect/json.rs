@@ -7,6 +7,7 @@ use crate::analysis::hints::Hint;
 use crate::document;
 use crate::input::about::Used;
 use crate::input::{LeftOut, ReadAs};
+use crate::result::json::provenance::{Provenance, provenance};
 
 #[derive(Serialize)]
 struct JsonScan<'a> {
@@ -21,6 +22,7 @@ struct JsonScan<'a> {
     sigma_ln: Option<f64>,
     left_out: &'a [LeftOut],
     hints: &'a [Hint],
+    provenance: Provenance<'a>,
 }
 
 #[derive(Serialize)]
@@ -57,6 +59,7 @@ fn scan<'a>(scan: &'a Inspected) -> JsonScan<'a> {
         sigma_ln: measurement.sigma_ln,
         left_out: &measurement.left_out,
         hints: &scan.hints,
+        provenance: provenance(&measurement.about, None),
     }
 }
 

@@ -60,7 +60,7 @@ pub fn named(file: &[u8]) -> Option<Error> {
         )
     } else if begins("<") {
         xml(head)
-    } else if begins("{") || begins("[") {
+    } else if is_json(head) {
         json(head)
     } else if begins("!!") {
         (
@@ -99,6 +99,16 @@ fn xml(head: &str) -> (String, &'static str) {
     (what.to_string(), "export the measurement as CSV text")
 }
 
+/// True of what begins like JSON; `[Header]` and `[deg]` do not.
+fn is_json(head: &str) -> bool {
+    let inside = |mark: char| head.strip_prefix(mark).map(str::trim_start);
+    let begins = |text: &str, marks: &[char]| text.is_empty() || text.starts_with(marks);
+    inside('{').is_some_and(|text| begins(text, &['"', '}']))
+        || inside('[').is_some_and(|text| {
+            begins(text, &['"', '{', '[', ']', '-']) || text.starts_with(|c: char| c.is_ascii_digit())
+        })
+}
+
 fn json(head: &str) -> (String, &'static str) {
     if head.contains("\"parameters\"") && head.contains("\"rho_d\"") {
         return (
@@ -115,7 +125,7 @@ fn json(head: &str) -> (String, &'static str) {
 /// What is wrong with a text that is no table either: no line has two numbers, and the first none but one or two words.
 pub fn no_table(text: &str) -> Option<Error> {
     let cells = |line: &str| -> Vec<bool> {
-        let cells = line.split([',', ';', '\t', ' ']).filter(|cell| !cell.trim().is_empty());
+        let cells = line.split([',', ';', '\t', '|', ' ']).filter(|cell| !cell.trim().is_empty());
         cells.map(|cell| cell.trim().parse::<f64>().is_ok()).collect()
     };
     let first = text.lines().find(|line| !is_remark(line))?;

@@ -1,11 +1,12 @@
 //! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
 
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::input::about::{Kind, ThetaI};
+use crate::input::facts;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
-use crate::input::rows::{self, number};
+use crate::input::rows::{self, Decimal, number_in};
 use crate::input::units::Angles;
 
 /// This format.
@@ -16,16 +17,18 @@ pub const FORMAT: Format = Format {
     reader: Reader::Text { is, read },
 };
 
-/// True if the first row has numbers in all cells but the first, and the second row is as long.
+/// True if the first row has angles in all cells but the first, and the second row is as long.
 fn is(text: &str) -> bool {
     let mut lengths = Vec::new();
     // Two rows are enough, and the error stops there.
     let _ = rows::for_each(text, |_, cells| {
-        let is_number = |cell: &&str| cell.parse::<f64>().is_ok_and(f64::is_finite);
+        let is_number = |cell: &&str| rows::parse(cell, Decimal::Unknown).is_some_and(f64::is_finite);
+        // Beyond a full turn they are wavelengths.
+        let is_angle = |cell: &&str| angle(cell).is_some_and(|degrees| degrees.abs() <= 360.0);
         let (corner, angles) = cells.split_first().unwrap_or((&"", &[]));
         // `Incident Angle: 20` stands above other tables.
         let is_remark = corner.ends_with([':', '=']);
-        let is_head = !is_remark && !is_number(corner) && !angles.is_empty() && angles.iter().all(is_number);
+        let is_head = !is_remark && !is_number(corner) && !angles.is_empty() && angles.iter().all(is_angle);
         if is_head || !lengths.is_empty() {
             lengths.push(cells.len());
         }
@@ -39,6 +42,13 @@ fn is(text: &str) -> bool {
     matches!(lengths[..], [head] if head > 2) || matches!(lengths[..], [head, row] if head == row || head > 3)
 }
 
+/// The angle in a cell, degrees: `20`, `22,5`, `20°`, `20 deg`, `AOI = 20`.
+fn angle(cell: &str) -> Option<f64> {
+    rows::parse(cell, Decimal::Unknown)
+        .filter(|angle| angle.is_finite())
+        .or_else(|| facts::angle_in(cell))
+}
+
 /// The one scan in the matrix; cells that are empty or NaN were not measured.
 ///
 /// Where one axis has azimuths, the options must give the one angle of incidence.
@@ -48,10 +58,18 @@ fn is(text: &str) -> bool {
 fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let mut head: Vec<f64> = Vec::new();
     let mut body: Vec<(u64, f64, Vec<f64>)> = Vec::new();
+    let mut decimal = Decimal::Unknown;
     rows::for_each(text, |line, cells| {
-        let number = |column| number(cells, column).map_err(|error| error.at_line(line));
+        let angle = |column: usize| {
+            angle(cells[column]).ok_or_else(|| {
+                Error::new(format!("'{}' is not an angle", shown(cells[column])))
+                    .at_line(line)
+                    .at_column(column as u64 + 1)
+                    .help("write it in degrees, like 20 or 20 deg")
+            })
+        };
         if head.is_empty() {
-            head = (1..cells.len()).map(number).collect::<Result<_, _>>()?;
+            head = (1..cells.len()).map(angle).collect::<Result<_, _>>()?;
             return Ok(());
         }
         if cells.len() != head.len() + 1 {
@@ -60,15 +78,9 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
                 .at_line(line)
                 .help("leave a cell empty where nothing was measured"));
         }
-        let value = |column: usize| {
-            if cells[column].is_empty() {
-                Ok(f64::NAN)
-            } else {
-                number(column)
-            }
-        };
-        let values = (1..cells.len()).map(value).collect::<Result<_, _>>()?;
-        body.push((line, number(0)?, values));
+        let values = (1..cells.len()).map(|column| number_in(cells, column, &mut decimal));
+        let values = values.collect::<Result<_, _>>().map_err(|error| error.at_line(line))?;
+        body.push((line, angle(0)?, values));
         Ok(())
     })?;
     if body.is_empty() {
@@ -161,6 +173,24 @@ mod tests {
             seen,
             [(10.0, -80.0, 0.5, 3), (60.0, -80.0, 0.25, 3), (60.0, 80.0, 1.0, 5)]
         );
+        // Heads with units or names, and decimal commas.
+        for head in [
+            "theta_s;10,0;60",
+            "theta_s;10°;60 deg",
+            "theta_s;AOI=10;AOI = 60 deg",
+            ";AOI 10;theta_i: 60",
+        ] {
+            let text = format!("{head}\n-80;0,5;0,25\n\n80;;1\n");
+            assert!(is(&text), "{head}");
+            let again = read(&text).unwrap().remove(0).rows;
+            assert!(
+                again
+                    .iter()
+                    .zip(&rows)
+                    .all(|(a, b)| (a.theta_i, a.value) == (b.theta_i, b.value)),
+                "{head}"
+            );
+        }
         let turned = read(",-80,80\n10,0.5,nan\n60,0.25,1\n").unwrap().remove(0).rows;
         let seen: Vec<_> = turned.iter().map(|row| (row.theta_i, row.theta_s, row.value)).collect();
         assert_eq!(seen, [(10.0, -80.0, 0.5), (60.0, -80.0, 0.25), (60.0, 80.0, 1.0)]);
@@ -193,6 +223,8 @@ mod tests {
     fn a_header_of_names_or_no_header_is_no_matrix() {
         assert!(!is("theta_i,theta_s,brdf\n1,2,3\n") && !is("45,-85,0.03\n") && !is("") && !is("word\n"));
         assert!(is("NaN 10 60\n1 2 3\n"));
+        // Wavelengths, and angles of scattering.
+        assert!(!is("theta_s,450,550\n1,2,3\n") && !is("AOI,theta_s=10,theta_s=20\n1,2,3\n"));
         let error = read(",10,20\n1,2\n").unwrap_err();
         assert_eq!(
             (error.line, error.what.contains("2 cells, the first row 3")),

@@ -6,9 +6,9 @@ use crate::error::{Error, shown};
 pub fn begins_line(text: &str, word: &str) -> bool {
     let places = memchr::memmem::find_iter(text.as_bytes(), word);
     places.into_iter().any(|place| {
-        let before = text[..place].rsplit('\n').next().unwrap_or("");
+        let before = text[..place].trim_end_matches([' ', '\t', '\r']);
         let after = text[place + word.len()..].chars().next();
-        before.trim().is_empty() && after.is_none_or(char::is_whitespace)
+        (before.is_empty() || before.ends_with('\n')) && after.is_none_or(char::is_whitespace)
     })
 }
 

@@ -1,13 +1,17 @@
 //! Reading of files on one core: bytes a second, each format at two sizes, which tell that the time grows no faster than the file.
 //!
-//! `cargo bench --bench reading`
+//! The time is that of the thread, so that other work on the machine counts little.
+//!
+//! `cargo bench --bench reading`, or as a table `cargo bench --bench reading -- --table > benches/results/reading.md`
 
 use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Duration;
 
 use brdfit::input::{self, ReadOptions};
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
+use rustix::time::{ClockId, clock_gettime};
 
 /// Rows of the smaller file; the larger has four times as many.
 const ROWS: usize = 20_000;
@@ -106,42 +110,111 @@ fn zemax(cells: usize) -> Vec<u8> {
     (text + "DataEnd\n").into_bytes()
 }
 
-fn reading(criterion: &mut Criterion) {
-    type Write = fn(usize) -> Vec<u8>;
-    let files: [(&str, Write); 10] = [
-        ("CSV", |rows| table(rows, ",", "\n")),
-        ("CSV, CR LF", |rows| table(rows, ",", "\r\n")),
-        ("CSV, CR", |rows| table(rows, ",", "\r")),
-        ("spaces", |rows| table(rows, "  ", "\n")),
-        ("wavelengths in rows", wavelengths),
-        ("wavelengths in columns", columns),
-        ("matrix", matrix),
-        ("ASTM", astm),
-        ("OpenMATERIAL", openmaterial),
-        ("Zemax", zemax),
-    ];
+/// Time of this thread on a processor.
+struct ThreadTime;
+
+impl ThreadTime {
+    fn now() -> Duration {
+        let now = clock_gettime(ClockId::ThreadCPUTime);
+        Duration::new(now.tv_sec.unsigned_abs(), now.tv_nsec as u32)
+    }
+}
+
+impl Measurement for ThreadTime {
+    type Intermediate = Duration;
+    type Value = Duration;
+
+    fn start(&self) -> Duration {
+        ThreadTime::now()
+    }
+    fn end(&self, start: Duration) -> Duration {
+        ThreadTime::now() - start
+    }
+    fn add(&self, a: &Duration, b: &Duration) -> Duration {
+        *a + *b
+    }
+    fn zero(&self) -> Duration {
+        Duration::ZERO
+    }
+    fn to_f64(&self, value: &Duration) -> f64 {
+        value.as_nanos() as f64
+    }
+    fn formatter(&self) -> &dyn ValueFormatter {
+        WallTime.formatter()
+    }
+}
+
+type Write = fn(usize) -> Vec<u8>;
+
+/// The formats, with what makes a file of so many numbers.
+const FILES: [(&str, Write); 10] = [
+    ("CSV", |rows| table(rows, ",", "\n")),
+    ("CSV, CR LF", |rows| table(rows, ",", "\r\n")),
+    ("CSV, CR", |rows| table(rows, ",", "\r")),
+    ("spaces", |rows| table(rows, "  ", "\n")),
+    ("wavelengths in rows", wavelengths),
+    ("wavelengths in columns", columns),
+    ("matrix", matrix),
+    ("ASTM", astm),
+    ("OpenMATERIAL", openmaterial),
+    ("Zemax", zemax),
+];
+
+fn read(name: &str, bytes: &[u8]) {
     let options = ReadOptions {
         drop_invalid: true,
         ..ReadOptions::default()
     };
+    let read = input::parse("file", black_box(bytes), &options);
+    black_box(read.unwrap_or_else(|error| panic!("{name}: {error}")));
+}
+
+fn reading(criterion: &mut Criterion<ThreadTime>) {
     let mut group = criterion.benchmark_group("reading");
-    for (name, file) in files {
+    for (name, file) in FILES {
         for rows in [ROWS, 4 * ROWS] {
             let bytes = file(rows);
             group.throughput(Throughput::Bytes(bytes.len() as u64));
-            group.bench_function(BenchmarkId::new(name, rows), |b| {
-                b.iter(|| {
-                    input::parse("file", black_box(&bytes), &options).unwrap_or_else(|error| panic!("{name}: {error}"))
-                });
-            });
+            group.bench_function(BenchmarkId::new(name, rows), |b| b.iter(|| read(name, &bytes)));
         }
     }
     group.finish();
 }
 
+/// The least of many times at each size: what disturbs makes them longer only.
+fn print_table() {
+    const TIMES: usize = 15;
+    println!("# Reading\n");
+    println!("Files in memory, read on one thread to samples; the least thread time of {TIMES} readings.");
+    println!("Regenerate: `cargo bench --bench reading -- --table > benches/results/reading.md`.\n");
+    println!("| format | MB | MB/s | MB | MB/s |");
+    println!("|---|--:|--:|--:|--:|");
+    for (name, file) in FILES {
+        let cells = [ROWS, 4 * ROWS].map(|rows| {
+            let bytes = file(rows);
+            let times = (0..TIMES).map(|_| {
+                let begun = ThreadTime::now();
+                read(name, &bytes);
+                ThreadTime::now() - begun
+            });
+            let least = times.min().unwrap_or_default();
+            let size = bytes.len() as f64 / 1e6;
+            format!("{size:.2} | {:.0}", size / least.as_secs_f64())
+        });
+        println!("| {name} | {} |", cells.join(" | "));
+    }
+}
+
 criterion_group! {
     name = benches;
-    config = Criterion::default().warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2)).sample_size(10);
+    config = Criterion::default().with_measurement(ThreadTime).warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2)).sample_size(10);
     targets = reading
 }
-criterion_main!(benches);
+
+fn main() {
+    if std::env::args().any(|argument| argument == "--table") {
+        return print_table();
+    }
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+}

@@ -125,7 +125,9 @@ fn json(head: &str) -> (String, &'static str) {
 /// What is wrong with a text that is no table either: no line has two numbers, and the first none but one or two words.
 pub fn no_table(text: &str) -> Option<Error> {
     let cells = |line: &str| -> Vec<bool> {
-        let cells = line.split([',', ';', '\t', '|', ' ']).filter(|cell| !cell.trim().is_empty());
+        let cells = line
+            .split([',', ';', '\t', '|', ' '])
+            .filter(|cell| !cell.trim().is_empty());
         cells.map(|cell| cell.trim().parse::<f64>().is_ok()).collect()
     };
     let first = text.lines().find(|line| !is_remark(line))?;

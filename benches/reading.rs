@@ -144,10 +144,10 @@ impl Measurement for ThreadTime {
     }
 }
 
-type Write = fn(usize) -> Vec<u8>;
+type Written = fn(usize) -> Vec<u8>;
 
 /// The formats, with what makes a file of so many numbers.
-const FILES: [(&str, Write); 10] = [
+const FILES: [(&str, Written); 10] = [
     ("CSV", |rows| table(rows, ",", "\n")),
     ("CSV, CR LF", |rows| table(rows, ",", "\r\n")),
     ("CSV, CR", |rows| table(rows, ",", "\r")),

@@ -6,7 +6,7 @@
 pub(crate) mod aperture;
 pub(crate) mod averaged;
 pub(crate) mod beside;
-mod calibration;
+pub(crate) mod calibration;
 pub(crate) mod offset;
 pub(crate) mod settled;
 pub(crate) mod setup;

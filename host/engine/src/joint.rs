@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::compiled::Kernel;
 use crate::instrument::beside::{Beside, Rows};
+use crate::instrument::calibration;
 use crate::instrument::setup::{self, Setup};
 use crate::layout::Layout;
 use crate::search::single;
@@ -146,12 +147,12 @@ pub(crate) fn run<const P: usize>(
         let value = layout.values(&x)[layout.places[k]];
         // kappa may be 0 where it is determined.
         let size = if own[k].is_squared() { value.max(1.0) } else { value };
-        let calibration = if own[k].is_weight() {
+        let of_scale = if own[k].is_weight() {
             options.instrument.scale_uncertainty * value
         } else {
             0.0
         };
-        (free && error <= size).then_some(error.hypot(calibration))
+        (free && error <= size).then_some(calibration::beside(error, of_scale))
     };
     let errors = |s: usize| {
         let places = 0..options.model.parameters.len();

@@ -70,7 +70,7 @@ pub fn quantities(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
     let open: Vec<Vec<&str>> = fits.iter().map(open).collect();
     let Some(first) = fits.first() else { return Vec::new() };
     let model = first.outcome.model;
-    let parameters = first.outcome.present().map(|place| {
+    let parameters = first.options.free().map(|place| {
         let parameter = &model.parameters[place];
         let value = |(fit, open): (&FittedScan, &Vec<&str>)| {
             let known = &fit.outcome.uncertainty;
@@ -161,7 +161,7 @@ pub fn budget(values: &[Value], degrees_within: usize, scaled: f64) -> Option<Bu
     let ratio = (between / within) * (between / within);
     let chance = FisherSnedecor::new(count - 1.0, degrees_within.max(1) as f64);
     let (type_a, type_b) = (between / count.sqrt(), scaled * mean.abs());
-    let combined = type_a.hypot(type_b);
+    let combined = (type_a * type_a + type_b * type_b).sqrt();
     let part = combined / type_a;
     let degrees_of_freedom = (count - 1.0) * part * part * part * part;
     let coverage = student(0.5 + 0.5 * LEVEL, degrees_of_freedom);

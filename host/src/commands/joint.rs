@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(value_name = "SCAN", required = true)]
     scans: Vec<PathBuf>,
     /// The parameters that are the same in all scans, with commas between [default: m]
-    #[arg(long, value_name = "LIST", conflicts_with = "repeats")]
+    #[arg(long, value_name = "LIST")]
     share: Option<String>,
     #[command(flatten)]
     search: SearchArguments,
@@ -85,6 +85,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
 
 /// The budget over runs of one sample.
 fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+    if arguments.share.is_some() {
+        return Err(
+            Error::new("--repeats fits each run alone, so that nothing is left to --share").help("keep one of them"),
+        );
+    }
     let Wanted::One(options) = arguments.search.wanted()? else {
         return Err(Error::new("--repeats compares fits of one model with the same terms")
             .help("name one --model and its --terms"));

@@ -30,14 +30,23 @@ impl Outcome {
     }
 }
 
+/// The standard error of a sum of two; the first to the bit where the second is 0.
+pub(crate) fn beside(stderr: f64, other: f64) -> f64 {
+    if other == 0.0 {
+        stderr
+    } else {
+        (stderr * stderr + other * other).sqrt()
+    }
+}
+
 /// Adds a further axis of one standard error.
 fn add(known: &mut Uncertainty, axis: Values, lifted: Values) {
     let count = axis.len();
     for (stderr, part) in known.stderr.iter_mut().zip(axis.iter()) {
-        *stderr = stderr.hypot(*part);
+        *stderr = beside(*stderr, *part);
     }
     for (stderr, part) in known.stderr_lifted.iter_mut().zip(lifted.iter()) {
-        *stderr = stderr.hypot(*part);
+        *stderr = beside(*stderr, *part);
     }
     for i in 0..count {
         for j in 0..count {

@@ -16,8 +16,8 @@ const HORIZON: f64 = 0.001_745;
 const SEARCHED: [f64; 9] = [0.0, -1.0, 1.0, -2.0, 2.0, -4.0, 4.0, -8.0, 8.0];
 /// The search in one dimension reaches this far to both sides of the best of them, radians.
 const REACH: f64 = 0.026;
-/// How often that is made again where the whole search was better.
-const LOOPS: usize = 6;
+/// How often that is made again where it ended at an end, or the whole search was better.
+const LOOPS: usize = 8;
 
 /// The offset of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,13 +98,14 @@ pub fn fit(
         None => (least.max(0.0).min(most), search(least.max(0.0).min(most), &[])?),
     };
     for _ in 0..LOOPS {
-        let around = ((at - REACH).max(least), (at + REACH).min(most));
-        let Some((offset, lowest, params)) = along(around, &descend, outcome.params)? else {
+        let (low, high) = ((at - REACH).max(least), (at + REACH).min(most));
+        let Some((offset, lowest, params)) = along((low, high), &descend, outcome.params)? else {
             break;
         };
         at = offset;
         outcome = search(at, &[params])?;
-        if !(outcome.cost < lowest * (1.0 - 1e-6)) {
+        let goes_on = (at == low && low > least) || (at == high && high < most);
+        if !goes_on && !(outcome.cost < lowest * (1.0 - 1e-6)) {
             break;
         }
     }
@@ -166,7 +167,7 @@ fn least_between(
     const CLOSE: f64 = 1e-8;
     const STEPS: u32 = 60;
     const SHORTER: f64 = 0.381_966_011_250_105_2;
-    // The ends of a range are as good as what lies between them.
+    // Where the function falls towards an end, that is the least.
     f(low)?;
     f(high)?;
     let first = low + SHORTER * (high - low);

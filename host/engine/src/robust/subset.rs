@@ -27,7 +27,7 @@ pub fn draw(samples: &[Sample<f64>], seed: u64, k: u64, size: usize) -> Vec<Samp
     let uniform: [f64; MOST] = start::unit(seed, k);
     let mut places: Vec<usize> = Vec::new();
     for part in uniform.into_iter().take(size) {
-        let part = if k % 2 == 0 { part } else { part * part * part };
+        let part = if k.is_multiple_of(2) { part } else { part * part * part };
         let mut place = ((part * samples.len() as f64) as usize).min(samples.len() - 1);
         while places.contains(&place) {
             place = (place + 1) % samples.len();

@@ -50,8 +50,8 @@ pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
                 return measurement;
             }
             let before: Vec<f64> = now.samples.iter().map(|sample| sample.weight / unit).collect();
-            let material = outcome.material();
-            let f = |sample: &Sample<f64>| material.ln_f(sample).map_or(sample.brdf, Real::exp);
+            let view = outcome.view();
+            let f = |sample: &Sample<f64>| view.ln_f(sample).map_or(sample.brdf, Real::exp);
             (now.samples, unit) = weighted(&measurement, f);
             let change = now.samples.iter().zip(before);
             let change = change.map(|(sample, before)| (sample.weight / unit / before - 1.0).abs());
@@ -99,8 +99,13 @@ pub fn judged(known: &Uncertainty, sigma: f64) -> (Uncertainty, Option<Verdict>)
         return (known.clone(), Some(Verdict::Refuted(ratio)));
     }
     let scaled = |axis: &Values| axis.iter().map(|part| part / ratio).collect::<Values>();
-    let mut of_file = known.clone().with_axes(known.axes.iter().map(scaled).collect());
-    of_file.axes_lifted = known.axes_lifted.iter().map(scaled).collect();
+    // What stands behind the axes of the parameters is the calibration, which is no noise.
+    let all = |axes: &[Values]| -> Vec<Values> {
+        let (noise, calibration) = axes.split_at(known.places.len());
+        noise.iter().map(scaled).chain(calibration.iter().copied()).collect()
+    };
+    let mut of_file = known.clone().with_axes(all(&known.axes));
+    of_file.axes_lifted = all(&known.axes_lifted);
     of_file.stderr_lifted = scaled(&known.stderr_lifted);
     of_file.effective = KNOWN;
     (of_file, Some(Verdict::Used))

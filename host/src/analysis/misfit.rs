@@ -16,7 +16,7 @@ use brdfit_core::uncertainty::Place;
 use super::profile::calibrate::threshold;
 use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
-use crate::engine::{Material, Outcome, Values};
+use crate::engine::{Outcome, Values, View};
 use process::{Node, Point};
 
 /// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
@@ -25,7 +25,7 @@ const EVIDENCE: f64 = 2.0;
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
 pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
     let known = &outcome.uncertainty;
-    corrected(samples, &outcome.material(), known).unwrap_or_else(|| unseen::doubted(known))
+    corrected(samples, &outcome.view(), known).unwrap_or_else(|| unseen::doubted(known))
 }
 
 /// So many standard errors are the half of a 95 % interval: Student's t of the effective degrees of freedom; infinite without any.
@@ -42,13 +42,13 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 }
 
 /// `None` where independence is not refuted, or nothing can be said.
-fn corrected(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Option<Uncertainty> {
+fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<Uncertainty> {
     let inside: Vec<usize> = known.inside().collect();
     if known.degrees_of_freedom < 4 || unseen::is_exact(known) || inside.is_empty() {
         return None;
     }
     let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
-    let lines = points(samples, material, &axes, known.scale)?;
+    let lines = points(samples, view, &axes, known.scale)?;
     let seen: Vec<bool> = (0..axes.len())
         .map(|k| {
             let squares: f64 = lines.iter().flatten().map(|point| point.row[k] * point.row[k]).sum();
@@ -64,11 +64,14 @@ fn corrected(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) 
 }
 
 /// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite.
-fn points(samples: &[Sample<f64>], material: &Material, axes: &[&Values], scale: f64) -> Option<Vec<Vec<Point>>> {
-    let slopes = material.off_zero();
+fn points(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Vec<Vec<Point>>> {
+    let slopes = View {
+        material: view.material.off_zero(),
+        ..*view
+    };
     let one = |line: usize, &(place, angle): &(usize, f64)| {
         let sample = &samples[place];
-        let residual = material.residual(sample)?;
+        let residual = view.residual(sample)?;
         let gradient = slopes.gradient(sample)?.1;
         let along = |axis: &&Values| {
             let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();

@@ -1,119 +1,156 @@
-//! Prints how often the 95 % intervals hold the truth, as a Markdown table: `cargo run --release --example coverage > benches/results/coverage.md`.
+//! Prints how often the 95 % intervals hold the truth, as a Markdown table: `cargo run --release --example coverage > benches/results/coverage.md`; a number behind `--` is that of copies.
 
-use brdfit::analysis::bootstrap::{Noise, copy};
-use brdfit::analysis::profile::calibrate::thresholds;
+#[path = "coverage/copies.rs"]
+mod copies;
+
+use brdfit::analysis::derived::{self, Value};
+use brdfit::analysis::fit::known;
+use brdfit::analysis::misfit::{coverage_factor, inflation};
 use brdfit::analysis::profile::{calibrate::threshold, hold::hold};
-use brdfit::engine::{FitOptions, Material, fit};
-use brdfit_core::brdf::NAMES;
+use brdfit::engine::uncertainty::Uncertainty;
+use brdfit::engine::{Material, fit};
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
-use brdfit_suite::scan::{data, scan, six};
+use copies::{Noise, SCENES, Scene};
 use rayon::prelude::*;
 
-const COPIES: u64 = 1000;
-/// Copies of a copy that tell how far its cost rises.
-const CALIBRATION: u32 = 99;
-/// The set and the parameter whose calibrated intervals are looked at: m of test data 2.
-const CALIBRATED: (usize, usize) = (1, 3);
-/// Standard deviation of a number that is uniform within +-0.1.
-const SCALE: f64 = 0.057_735_026_918_962_58;
+/// What is looked at, at the middle angle of incidence.
+const NAMES: [&str; 6] = ["rho_d", "m", "rho_s F", "peak", "width", "reflectance"];
 
-/// How a set is measured again.
-type Measure = fn(&[Sample<f64>], &Material, &mut Noise) -> Vec<Sample<f64>>;
-
-/// The actual parameters of the paper's sets.
-const ACTUAL: [[f64; 6]; 3] = [
-    [0.1, 10.0, 0.01, 0.1, 3.0, 1.0],
-    [0.2, 1.5, 0.02, 0.15, 1.15, 0.9],
-    [0.15, 1.0, 0.001, 0.005, 1.1, 0.86],
-];
+/// One in so many copies is profiled.
+const PROFILED: u64 = 5;
 
 fn main() {
+    let copies: u64 = std::env::args()
+        .nth(1)
+        .map_or(200, |count| count.parse().expect("a number of copies"));
+    let half = 100.0 * 1.96 * (0.95 * 0.05 / copies as f64).sqrt();
     println!("# Coverage of the 95 % intervals\n");
     println!(
-        "Share in % of {COPIES} noisy copies of each of the paper's sets whose interval holds the actual value; binomial noise of these shares is +-0.7 at 95 %."
+        "Share in % of {copies} simulated copies of each scene whose interval holds the truth, the parameters or quantities that the scene was made with; shares of 95 % have a noise of +-{half:.1}."
     );
     println!(
-        "Quadratic: best value +- Student's t times the standard error that a fit prints; a value on a bound has none, and counts as its own interval."
+        "Independent: value +- Student's t times the standard error of independent residuals, with bounds taken as known where a parameter is on one, as it was before. Stated: value +- the coverage factor times the standard error that `fit` prints. Profile: the F test of `brdfit profile` does not refute the true value, for every fifth copy."
     );
+    println!("Correlated: copies whose residuals are taken for correlated; bound: copies with a parameter on a bound.");
     println!(
-        "Profile: the best fit with the parameter held at its actual value is not refuted by the F test, which is what the intervals of `brdfit profile` are made of."
+        "Of GGX scenes, which are fitted with Beckmann's model and are random, the truth is the real rho_d, peak and reflectance; m and rho_s F mean something else there."
     );
+    println!("Regenerate: `cargo run --release --example coverage > benches/results/coverage.md`.\n");
     println!(
-        "Calibrated: it is not refuted by {CALIBRATION} copies of that fit with noise of their own (`brdfit profile --calibrate {CALIBRATION}`); only for m of set 2, where the F test says too little, as it takes 200 fits for one answer."
+        "| scene | errors | intervals | {} | correlated | bound |",
+        NAMES.join(" | ")
     );
-    println!("Regenerate: `cargo run --release --example coverage > benches/results/coverage.md`.");
-    let normal: Measure = |samples, params, noise| copy(samples, params, SCALE, noise);
-    let uniform: Measure = |samples, params, noise| {
-        let clean = copy(samples, params, 0.0, noise);
-        let noisy = |sample: &Sample<f64>, noise: &mut Noise| Sample {
-            brdf: sample.brdf * (0.9 + 0.2 * noise.unit()),
-            ..*sample
-        };
-        clean.iter().map(|sample| noisy(sample, noise)).collect()
-    };
-    table(
-        "Errors of ln f normal, standard deviation 0.0577: what the intervals assume",
-        normal,
-        true,
-    );
-    table(
-        "Errors of f uniform within +-10 %, as the paper's: of the same standard deviation, but ln f is low by 0.0017 on average, so rho_d and the products of rho and F are low by 0.17 %",
-        uniform,
-        false,
-    );
-}
-
-fn table(title: &str, measure: Measure, calibrated: bool) {
-    println!("\n{title}.\n");
-    println!("| set | intervals | {} |", NAMES.join(" | "));
-    println!("|--:|---|{}", "--:|".repeat(NAMES.len()));
-    for (set, actual) in ACTUAL.iter().enumerate() {
-        let samples = scan(&data(&format!("testdata{}_ideal.csv", set + 1)));
-        let held = (0..COPIES).into_par_iter().map(|seed| {
-            let noise = &mut Noise::new(set as u64, seed);
-            let calibrated = (calibrated && set == CALIBRATED.0).then_some(seed);
-            intervals(&measure(&samples, &Material::paper(*actual), noise), actual, calibrated)
-        });
-        let none = || [[0u32; 6]; 3];
-        let sum = held
-            .map(|held| held.map(|row| row.map(u32::from)))
-            .reduce(none, |a, b| {
-                std::array::from_fn(|kind| std::array::from_fn(|k| a[kind][k] + b[kind][k]))
-            });
-        let kinds = ["quadratic", "profile", "calibrated"].iter().zip(sum);
-        for (kind, counts) in kinds.take(if calibrated && set == CALIBRATED.0 { 3 } else { 2 }) {
-            let mut shares = counts.map(|count| format!("{:.1}", 100.0 * f64::from(count) / COPIES as f64));
-            for k in (0..6).filter(|&k| *kind == "calibrated" && k != CALIBRATED.1) {
-                shares[k] = "–".to_string();
-            }
-            println!("| {} | {kind} | {} |", set + 1, shares.join(" | "));
+    println!("|---|---|---|{}", "--:|".repeat(NAMES.len() + 2));
+    for scene in &SCENES {
+        for noise in scene.noises {
+            row(scene, *noise, copies);
         }
     }
 }
 
-/// Do the quadratic, the profile and the calibrated interval of each parameter hold its actual value? The last only with a seed for its copies.
-fn intervals(samples: &[Sample<f64>], actual: &[f64; 6], calibrated: Option<u64>) -> [[bool; 6]; 3] {
-    let options = FitOptions::default();
-    let outcome = fit(samples, &options).expect("simulated scans are valid");
-    let known = &outcome.uncertainty;
-    let limit = threshold(0.95, known.degrees_of_freedom as f64);
-    let best = six(&outcome.params);
-    let quadratic = std::array::from_fn(|k| (best[k] - actual[k]).abs() <= Real::sqrt(limit) * known.stderr[k]);
-    let held = std::array::from_fn(|k| {
-        let point = hold(samples, &options, &outcome, k, actual[k]).expect("simulated scans are valid");
-        let best = outcome.cost.min(point.cost);
-        let rise = (point.cost - best) / best * known.degrees_of_freedom as f64;
-        let calibrated = calibrated.filter(|_| k == CALIBRATED.1).map(|seed| {
-            let options = FitOptions { seed, ..options };
-            let copies = thresholds(samples, &options, k, &point.params, known.scale, CALIBRATION);
-            rise <= copies.expect("simulated scans are valid")[1]
-        });
-        (rise <= limit, calibrated == Some(true))
+/// Of one copy: whether each interval of each kind holds the truth, if it is known, and whether residuals are correlated and a parameter is on a bound.
+type Held = ([[Option<bool>; 6]; 3], bool, bool);
+
+fn row(scene: &Scene, noise: Noise, copies: u64) {
+    let all: Vec<Held> = (0..copies)
+        .into_par_iter()
+        .map(|copy| one(scene, noise, copy))
+        .collect();
+    let share = |of: &dyn Fn(&Held) -> Option<bool>| {
+        let list: Vec<bool> = all.iter().filter_map(of).collect();
+        match list.len() {
+            0 => "–".to_string(),
+            count => format!(
+                "{:.1}",
+                100.0 * list.iter().filter(|held| **held).count() as f64 / count as f64
+            ),
+        }
+    };
+    for (kind, name) in ["independent", "stated", "profile"].into_iter().enumerate() {
+        let shares: Vec<String> = (0..6).map(|k| share(&|held| held.0[kind][k])).collect();
+        let (correlated, bound) = (share(&|held| Some(held.1)), share(&|held| Some(held.2)));
+        println!(
+            "| {} | {} | {name} | {} | {correlated} | {bound} |",
+            scene.name,
+            noise.name(),
+            shares.join(" | ")
+        );
+    }
+}
+
+fn one(scene: &Scene, noise: Noise, copy: u64) -> Held {
+    let (truth, samples) = scene.copy(noise, copy);
+    let options = scene.options();
+    let found = fit(&samples, &options).expect("simulated scans are valid");
+    let independent = found.uncertainty.clone();
+    let outcome = known(&samples, &options, found.clone());
+    let theta_i = scene.angles[scene.angles.len() / 2].to_radians();
+    let material = outcome.material();
+    let actual = quantities(&truth, theta_i, &independent);
+    let held = |known: &Uncertainty, factor: f64| -> [Option<bool>; 6] {
+        let values = quantities(&material, theta_i, known);
+        std::array::from_fn(|k| {
+            let (value, actual) = (values[k]?, actual[k]?);
+            let same = truth.model == material.model || !matches!(k, 1 | 2);
+            same.then_some((value.value - actual.value).abs() <= factor * value.stderr)
+        })
+    };
+    let degrees = independent.degrees_of_freedom as f64;
+    let plain = held(&without_bounds(&independent), threshold(0.95, degrees).sqrt());
+    let stated = held(&outcome.uncertainty, coverage_factor(&outcome.uncertainty));
+    // Profiles take most of the time: every fifth copy has them.
+    let profile = std::array::from_fn(|k| {
+        let name = ["rho_d", "m"].get(k).filter(|_| copy % PROFILED == 0)?;
+        let place = material.model.place(name)?;
+        if truth.model != material.model && k == 1 {
+            return None;
+        }
+        let value = truth.values[place];
+        let point = hold(&samples, &options, &found, place, value).ok()?;
+        let rise = (point.cost - found.cost).max(0.0) / found.cost * degrees;
+        let limit =
+            inflation(&outcome.uncertainty, &independent, place) * threshold(0.95, outcome.uncertainty.effective);
+        Some(rise <= limit)
     });
+    let bound = !outcome.at_bound.is_empty();
+    ([plain, stated, profile], outcome.uncertainty.misfit.is_some(), bound)
+}
+
+/// Errors with what is on a bound held there.
+fn without_bounds(known: &Uncertainty) -> Uncertainty {
+    let inside: Vec<usize> = known.inside().collect();
+    let mut axes = known.axes.clone();
+    for (place, axis) in axes.iter_mut().enumerate() {
+        if !inside.contains(&place) {
+            axis.iter_mut().for_each(|part| *part = 0.0);
+        }
+    }
+    known.clone().with_axes(axes)
+}
+
+fn quantities(material: &Material, theta_i: f64, known: &Uncertainty) -> [Option<Value>; 6] {
+    let at = derived::at(theta_i, material, known);
+    let parameter = |name: &str| {
+        let place = material.model.place(name)?;
+        let (value, stderr) = (material.values[place], known.stderr[place]);
+        Some(Value { value, stderr })
+    };
     [
-        quadratic,
-        held.map(|(profile, _)| profile),
-        held.map(|(_, calibrated)| calibrated),
+        parameter("rho_d"),
+        parameter("m"),
+        at.rho_s_f,
+        at.peak.map(|peak| peak.f),
+        at.peak.and_then(|peak| peak.width),
+        Some(at.reflectance),
     ]
+}
+
+/// A sample of a material in plane.
+fn sample(material: &Material, theta_i: f64, theta_s: f64, error: f64) -> Sample<f64> {
+    let sample = Sample::in_plane(theta_i.to_radians(), theta_s.to_radians(), 1.0);
+    let ln_f = material.ln_f(&sample).expect("above the horizon") + error;
+    Sample {
+        brdf: libm::exp(ln_f),
+        ..sample
+    }
 }

@@ -24,8 +24,14 @@ fn brdfit(arguments: &[&str]) -> Ran {
 }
 
 fn export(to: &str, name: &str) -> String {
-    let ran = brdfit(&["export", "--params", LIST, "--to", to, "--name", name]);
-    assert_eq!((ran.code, ran.errors.as_str()), (0, ""));
+    exported(&["export", "--params", LIST, "--to", to, "--name", name])
+}
+
+/// What is written, with no word but that the parameters make energy, which a Zemax table cannot hold.
+fn exported(arguments: &[&str]) -> String {
+    let ran = brdfit(arguments);
+    let said = ran.errors.lines().all(|line| line.starts_with("TIS is written as 1"));
+    assert!(ran.code == 0 && said, "{}", ran.errors);
     ran.output
 }
 
@@ -73,7 +79,7 @@ fn tables_of_any_model_read_back() {
             } else {
                 &[]
             };
-            let text = program::succeed(&[&arguments[..], wavelength].concat());
+            let text = exported(&[&arguments[..], wavelength].concat());
             let f = |angles: [f64; 3]| {
                 let [theta_i, theta_s, delta_phi] = angles;
                 let sample = Sample {

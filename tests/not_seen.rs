@@ -46,3 +46,18 @@ fn an_exact_fit_has_no_errors() {
     let page = page.output;
     assert!(page.contains("the fit is exact") && !page.contains("+- 0\n"), "{page}");
 }
+
+/// A model that makes energy is exported with a word.
+#[test]
+fn a_total_above_one_is_said() {
+    let export = |rho_s: &str| {
+        let params = format!("rho_d=0.1,rho_s={rho_s},rho_v=0,m=0.1,n=3,kappa=1");
+        program::brdfit(&["export", "--params", &params, "--to", "zemax"], b"").errors
+    };
+    let said = export("10");
+    assert!(
+        said.contains("TIS is written as 1 at 18 of 18 angles of incidence"),
+        "{said}"
+    );
+    assert_eq!(export("0.5"), "");
+}

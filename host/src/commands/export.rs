@@ -137,7 +137,10 @@ fn write(arguments: &Arguments, models: &[Model]) -> Result<(Vec<u8>, Option<Str
         Form::Gltf => with_deviation(renderers::gltf(models)?),
         Form::Materialx => with_deviation(renderers::materialx(models)?),
         Form::Rgl => return Ok((rgl::write(&by_length(arguments, models)?), None)),
-        Form::Zemax => (zemax::write(one()?), None),
+        Form::Zemax => {
+            let model = one()?;
+            (zemax::write(model), zemax::clamped(model))
+        }
         Form::ZemaxAbg => (abg::zemax(one()?)?, None),
         Form::Fred => (abg::fred(one()?)?, None),
         Form::Glsl => (glsl::write(one()?)?, None),

@@ -5,6 +5,7 @@ use libm::{atan2, hypot};
 
 use super::model::Model;
 use crate::analysis::reflectance::reflectance;
+use crate::number::four;
 
 /// Angles of incidence in degrees.
 const INCIDENCES: [f64; 18] = [
@@ -12,6 +13,20 @@ const INCIDENCES: [f64; 18] = [
 ];
 /// Steps of the azimuth, degrees.
 const AZIMUTH_STEP: usize = 5;
+
+/// What is said of a model whose reflectance is above 1 somewhere, where the file says 1.
+pub fn clamped(model: &Model) -> Option<String> {
+    let each = INCIDENCES.map(|theta_i| (reflectance(&model.material, theta_i.to_radians()).0, theta_i));
+    let above = each.iter().filter(|(sum, _)| *sum > 1.0).count();
+    let (most, theta_i) = each.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (above > 0).then(|| {
+        format!(
+            "TIS is written as 1 at {above} of {} angles of incidence: the model sends out more light than arrives, {} times as much at {theta_i} deg",
+            INCIDENCES.len(),
+            four(most)
+        )
+    })
+}
 
 /// The file: degrees, sr^-1; 0 is below the horizon.
 pub fn write(model: &Model) -> String {
@@ -33,7 +48,7 @@ pub fn write(model: &Model) -> String {
     }
     text += "\nMonochrome\nDataBegin\n";
     for theta_i in INCIDENCES {
-        // The format has no place for a model that makes energy.
+        // The format has no place for a model that makes energy: see [`clamped`].
         let tis = reflectance(&model.material, theta_i.to_radians()).0.min(1.0);
         text += &format!("TIS  {tis:.6}\n");
         for &azimuth in &azimuths {

@@ -7,6 +7,7 @@ use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
 use crate::analysis::derived::Derived;
+use crate::analysis::deviations::Verdict;
 use crate::analysis::fit::FittedScan;
 use crate::analysis::misfit::coverage_factor;
 use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
@@ -320,6 +321,15 @@ fn of_scan() -> Vec<Column> {
             "sum of squared residuals over their variances in the file",
             Found,
             |row| row.scan?.chi2,
+        ),
+        text(
+            "deviations",
+            "what became of the standard deviations of the file: used for errors, or refuted by chi2",
+            Found,
+            |row| match row.scan?.deviations? {
+                Verdict::Used => Some("used".into()),
+                Verdict::Refuted(_) => Some("refuted".into()),
+            },
         ),
         whole("left_out", "rows of the scan that were left out", Otherwise, |row| {
             Some(row.scan?.left_out.iter().map(|one| one.samples as u64).sum())

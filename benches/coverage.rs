@@ -100,7 +100,7 @@ fn one(scene: &Scene, noise: Noise, copy: u64) -> Held {
     let stated = held(&outcome.uncertainty, coverage_factor(&outcome.uncertainty));
     // Profiles take most of the time: every fifth copy has them.
     let profile = std::array::from_fn(|k| {
-        let name = ["rho_d", "m"].get(k).filter(|_| copy % PROFILED == 0)?;
+        let name = ["rho_d", "m"].get(k).filter(|_| copy.is_multiple_of(PROFILED))?;
         let place = material.model.place(name)?;
         if truth.model != material.model && k == 1 {
             return None;

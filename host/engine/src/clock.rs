@@ -4,9 +4,13 @@ use std::time::Duration;
 
 #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
 mod now {
-    use std::time::{Duration, Instant};
+    use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
     pub type Now = Instant;
+
+    pub fn since_1970() -> Duration {
+        SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
+    }
 
     pub fn now() -> Now {
         Instant::now()
@@ -26,9 +30,13 @@ mod now {
 
     static CLOCK: OnceLock<fn() -> Duration> = OnceLock::new();
 
-    /// Takes the time from here: since any moment that stays the same. Without it no time passes; the first call counts.
+    /// Takes the time from here: since the beginning of 1970, UTC. Without it no time passes; the first call counts.
     pub fn provide(clock: fn() -> Duration) {
         let _ = CLOCK.set(clock);
+    }
+
+    pub fn since_1970() -> Duration {
+        now()
     }
 
     pub fn now() -> Now {
@@ -42,6 +50,11 @@ mod now {
 
 #[cfg(all(target_family = "wasm", target_os = "unknown"))]
 pub use now::provide;
+
+/// The time since the beginning of 1970, UTC; zero where no clock is to be had.
+pub fn since_1970() -> Duration {
+    now::since_1970()
+}
 
 /// Runs from its start on.
 #[derive(Clone, Copy, Debug)]

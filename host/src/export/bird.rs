@@ -1,12 +1,11 @@
 //! EURAMET BiRD universal BRDF JSON: the model in `software.simulation_model`, and its BRDF in plane.
 
-use std::time::{SystemTime, UNIX_EPOCH};
-
 use brdfit_core::real::Real;
 use serde_json::{Value, json};
 
 use super::model::{Model, word};
 use crate::document;
+use crate::engine::clock::since_1970;
 
 const SCHEMA: &str =
     "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
@@ -73,9 +72,7 @@ pub fn write(model: &Model) -> String {
 
 /// Now, in UTC as ISO 8601.
 fn now() -> String {
-    let seconds = SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs());
+    let seconds = since_1970().as_secs();
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     let (year, month, day) = date(days);
     format!(

@@ -19,7 +19,7 @@ async function handle(data) {
     if (packed || module) {
       // The page gets it back, for the next worker.
       answer = module ?? (await WebAssembly.compile(unpack(packed, size)));
-      const instance = await WebAssembly.instantiate(answer, { page: { now: () => performance.now() } });
+      const instance = await WebAssembly.instantiate(answer, { page: { now: () => performance.timeOrigin + performance.now() } });
       core = instance.exports;
     } else if (forget) {
       core.brdfit_forget();

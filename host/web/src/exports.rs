@@ -11,7 +11,7 @@ use crate::session::Session;
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Milliseconds since some moment.
+    /// Milliseconds since the beginning of 1970, UTC, with parts.
     safe fn now() -> f64;
 }
 

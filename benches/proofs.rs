@@ -27,7 +27,12 @@ fn main() {
         limit.join(" ")
     );
     println!(
-        "Seconds are processor time of all threads, which share the work evenly; a proof that is complete has the same boxes in each run."
+        "Seconds are processor time of all threads, which share the work evenly, of a build {} optimisation; a proof that is complete has the same boxes in each run.",
+        if cfg!(debug_assertions) {
+            "for tests, with little"
+        } else {
+            "with full"
+        }
     );
     println!("Regenerate: `cargo run --release --example proofs{command} > benches/results/certify.md`.\n");
     let sets: Vec<PathBuf> = (1..=3)

@@ -1,5 +1,8 @@
 //! The guide: one page a task.
 //!
+//! The commands are for a clone of the project: where `brdfit` is installed, write it in place of `cargo run --release --`.
+//! They run as they stand, and write into the folder `target`.
+//!
 //! | page | tells |
 //! |---|---|
 //! | [`reading`] | which files are read, and what their numbers are taken for |

@@ -87,6 +87,23 @@ def test_units(plain):
         brdfit.fit(45, THETA_S * unit.meter, MEASURED)
 
 
+def test_units_of_astropy(plain):
+    class Quantity:
+        """What is asked of astropy.units.Quantity."""
+
+        unit = "rad"
+
+        def __init__(self, values):
+            self.values = values
+
+        def to_value(self, unit):
+            assert unit in ("deg", "1 / sr")
+            return np.degrees(self.values) if unit == "deg" else self.values
+
+    result = brdfit.fit(45, Quantity(np.radians(THETA_S)), Quantity(MEASURED))
+    assert result.x == pytest.approx(plain.x, rel=1e-3)
+
+
 def test_pandas_and_xarray(plain):
     pd, xr = pytest.importorskip("pandas"), pytest.importorskip("xarray")
     frame = pd.DataFrame({"theta_i_deg": THETA_I, "theta_s_deg": THETA_S, "brdf_per_sr": MEASURED})

@@ -51,7 +51,12 @@ fn each_error_of_a_file_names_its_place() {
             ":3:3",
             "decimal comma",
         ),
-        ("hole", format!("{HEAD}45,,0.1\n").into(), ":4:2", "'' is not a number"),
+        (
+            "hole",
+            format!("{HEAD}45,,0.1\n").into(),
+            ":4:2",
+            "theta_s is not an angle",
+        ),
         ("nan", format!("{HEAD}45,10,NaN\n").into(), ":4:3", "--drop-invalid"),
         ("inf", format!("{HEAD}45,10,inf\n").into(), ":4:3", "--drop-invalid"),
         ("nan_angle", format!("{HEAD}nan,10,1\n").into(), ":4:1", "not an angle"),

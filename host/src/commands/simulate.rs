@@ -157,7 +157,8 @@ fn material(arguments: &Arguments) -> Result<Material, Error> {
     let mirror = get("n") != Some(1.0) || get("kappa").is_some_and(|kappa| kappa != 0.0);
     let weights = || model.parameters.iter().filter(|parameter| parameter.is_weight());
     let shines = |name: &str| get(name).is_some_and(|weight| weight > 0.0) && (name == "rho_d" || mirror);
-    if !weights().any(|parameter| shines(parameter.name)) {
+    // A model without weights is never dark.
+    if weights().next().is_some() && !weights().any(|parameter| shines(parameter.name)) {
         let names: Vec<&str> = weights().map(|parameter| parameter.name).collect();
         return Err(Error::new("the BRDF of these parameters is 0 everywhere").help(format!(
             "give one of {} above 0, and n other than 1 for the lobes",

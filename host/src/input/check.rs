@@ -67,8 +67,9 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     }
     let of_file = weights.normalise(&mut samples);
     let sigma_ln = of_file.or(scan.about.sigma_ln);
-    // Weights alone, as in a table of the program's own, tell no more.
-    deviations.retain(|_| of_file.is_some());
+    // Weights alone tell no more; a table of the program's own has the deviations beside them.
+    let told = sigma_ln.is_some() && deviations.iter().all(|deviation| *deviation != Deviation::default());
+    deviations.retain(|_| told);
     Ok(Measurement {
         file: file.to_string(),
         name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
@@ -133,6 +134,9 @@ fn sample(row: &Row, places: &Places, read_as: &ReadAs, divisor: f64, options: &
         (places.theta_s, "theta_s", row.theta_s),
         (places.phi, "the azimuth", row.delta_phi.unwrap_or(0.0)),
     ] {
+        if angle.is_nan() {
+            return invalid(column, format!("{name} is not an angle"));
+        }
         if !angle.is_finite() {
             return invalid(column, format!("{name} is {}, which is not an angle", shortest(angle)));
         }
@@ -251,7 +255,10 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions, brdf: f64) -> Re
     let sigma = match known {
         Weight::Unknown => return Ok((1.0, UNIT)),
         Weight::Factor(factor) if factor >= 0.0 && factor.is_finite() => return Ok((factor, UNIT)),
-        Weight::Factor(factor) => {
+        Weight::Own(factor, deviation) if factor >= 0.0 && factor.is_finite() => {
+            return Ok((factor, (weight::Source::Unit, deviation)));
+        }
+        Weight::Factor(factor) | Weight::Own(factor, _) => {
             return Err(format!(
                 "the weight is {}, and must be a number from 0 on",
                 shortest(factor)

@@ -34,6 +34,8 @@ pub struct Columns {
     pub unit: Option<usize>,
     /// The standard deviation of ln f that a weight of 1 stands for, which the program writes beside weights.
     pub sigma_ln: Option<usize>,
+    /// The absolute and the relative part of the standard deviations that these weights are from.
+    pub own_sigma: Option<[usize; 2]>,
     /// The columns of values, each a scan of its own; at least one.
     pub values: Vec<Value>,
     /// Columns that are not used, with what they look like.
@@ -124,6 +126,9 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     let polarisation = finder.one("the polarisation", Role::Polarisation)?;
     let unit = finder.one("the unit", Role::Unit)?;
     let sigma_ln = finder.one("the unit of weights", Role::SigmaLn)?;
+    let absolute = finder.one("the absolute deviation", Role::OwnAbsolute)?;
+    let relative = finder.one("the relative deviation", Role::OwnRelative)?;
+    let own_sigma = absolute.zip(relative).map(|(absolute, relative)| [absolute, relative]);
     splits.extend(finder.one("the sample", Role::Sample)?);
     for &place in splits.iter().chain(&ignored) {
         finder.taken[place] = true;
@@ -167,7 +172,16 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     for place in uncertainty::assign(&heads, &taken, &mut values, options)? {
         taken[place] = true;
     }
-    let used = [theta_i, Some(theta_s), wavelength, polarisation, unit, sigma_ln];
+    let used = [
+        theta_i,
+        Some(theta_s),
+        wavelength,
+        polarisation,
+        unit,
+        sigma_ln,
+        absolute,
+        relative,
+    ];
     let used: Vec<usize> = used.into_iter().flatten().collect();
     let unused = (0..heads.len()).filter(|&k| ignored.contains(&k) || !taken[k] && !used.contains(&k));
     let unused: Vec<(usize, Role)> = unused
@@ -185,6 +199,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
         splits,
         unit,
         sigma_ln,
+        own_sigma,
         values,
         unused,
         heads,

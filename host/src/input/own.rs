@@ -22,6 +22,7 @@ pub fn table(scans: &[Measurement]) -> String {
     });
     let weighted = all().any(|sample| sample.weight != 1.0);
     let sigma_ln = scans.iter().any(|scan| scan.sigma_ln.is_some());
+    let deviations = scans.iter().any(|scan| !scan.deviations.is_empty());
     let unit = if in_degrees { "deg" } else { "rad" };
 
     let mut head: Vec<String> = Vec::new();
@@ -29,14 +30,16 @@ pub fn table(scans: &[Measurement]) -> String {
     head.extend(["theta_i", "theta_s"].map(|name| format!("{name}_{unit}")));
     head.extend(out_of_plane.then(|| format!("delta_phi_{unit}")));
     head.push("brdf_per_sr".to_string());
-    head.extend(weighted.then(|| "weight".to_string()));
+    head.extend((weighted || deviations).then(|| "weight".to_string()));
     head.extend(sigma_ln.then(|| "sigma_ln".to_string()));
+    let parts = ["own_absolute_sigma", "own_relative_sigma"];
+    head.extend(parts.into_iter().filter(|_| deviations).map(String::from));
 
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory does not fail.
     let _ = write_row(&mut writer, &head);
     for scan in scans {
-        for sample in &scan.samples {
+        for (place, sample) in scan.samples.iter().enumerate() {
             let angle = |radians: f64, back: fn(f64) -> f64| {
                 let shown = if in_degrees { degrees(radians, back) } else { None };
                 shortest(shown.unwrap_or(radians))
@@ -47,8 +50,12 @@ pub fn table(scans: &[Measurement]) -> String {
             row.push(angle(sample.theta_s, f64::to_radians));
             row.extend(out_of_plane.then(|| angle(sample.delta_phi, azimuth)));
             row.push(shortest(sample.brdf));
-            row.extend(weighted.then(|| shortest(sample.weight)));
+            row.extend((weighted || deviations).then(|| shortest(sample.weight)));
             row.extend(sigma_ln.then(|| scan.sigma_ln.map_or(String::new(), shortest)));
+            let own = scan.deviations.get(place);
+            let parts = [own.map(|own| own.absolute), own.map(|own| own.relative)];
+            let parts = parts.into_iter().filter(|_| deviations);
+            row.extend(parts.map(|part| part.map_or(String::new(), shortest)));
             let _ = write_row(&mut writer, &row);
         }
     }

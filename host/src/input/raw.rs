@@ -5,6 +5,7 @@ use super::head::plain;
 use super::left_out::Counts;
 use super::units::{Angles, Quantity};
 use super::wavelength;
+use super::weight::Deviation;
 use crate::error::{Error, shown};
 
 /// A scan as it stands in the file; nothing is checked or converted.
@@ -84,6 +85,8 @@ pub enum Weight {
     RelativeSigma(f64),
     /// A factor of the residual.
     Factor(f64),
+    /// The same, of the program's own table, with the standard deviation that it is from.
+    Own(f64, Deviation),
 }
 
 /// The scans that the user wants: those of which a name is in `wanted`, or all if that is empty.

@@ -34,6 +34,10 @@ pub enum Role {
     Unit,
     /// The standard deviation of ln f that a weight of 1 stands for.
     SigmaLn,
+    /// The absolute part of the standard deviation that a weight of the program's own table is from.
+    OwnAbsolute,
+    /// The relative part.
+    OwnRelative,
     /// Number or time of a measurement: it tells repeated rows apart.
     Repeat,
     /// Values of this kind.
@@ -239,6 +243,8 @@ fn word(plain: &str) -> Option<Role> {
         | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
         "unit" | "units" => Role::Unit,
         "sigmaln" => Role::SigmaLn,
+        "ownabsolutesigma" => Role::OwnAbsolute,
+        "ownrelativesigma" => Role::OwnRelative,
         "run" | "repeat" | "repetition" | "rep" | "index" | "idx" | "no" | "nr" | "number" | "id" | "time" | "date"
         | "datetime" | "timestamp" | "measurement" | "measurementno" | "runno" | "runid" | "point" | "row"
         | "sweep" => Role::Repeat,

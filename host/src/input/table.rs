@@ -15,6 +15,7 @@ use super::sheet::Sheet;
 use super::uncertainty::WeightKind;
 use super::unit::Unit;
 use super::units::{Polarisation, WavelengthUnit};
+use super::weight::Deviation;
 use super::{channel, polarisation, wavelength};
 use crate::error::{Error, shown};
 
@@ -206,7 +207,16 @@ impl<'a> Reader<'a> {
             WeightKind::Sigma(coverage) => Weight::Sigma(x / coverage),
             WeightKind::RelativeSigma(coverage) => Weight::RelativeSigma(x / coverage),
             WeightKind::PercentSigma(coverage) => Weight::RelativeSigma(x / coverage / 100.0),
-            WeightKind::Factor => Weight::Factor(x),
+            WeightKind::Factor => match self.columns.own_sigma {
+                Some([absolute, relative]) if !cells[absolute].is_empty() => Weight::Own(
+                    x,
+                    Deviation {
+                        absolute: self.number(cells, absolute)?,
+                        relative: self.number(cells, relative)?,
+                    },
+                ),
+                _ => Weight::Factor(x),
+            },
         })
     }
 
@@ -346,6 +356,10 @@ impl<'a> Reader<'a> {
         add(columns.polarisation, "polarisation");
         add(columns.unit, "unit of the value");
         add(columns.sigma_ln, "standard deviation of ln f at a weight of 1");
+        if let Some([absolute, relative]) = columns.own_sigma {
+            add(Some(absolute), "absolute standard deviation");
+            add(Some(relative), "relative standard deviation");
+        }
         columns
             .splits
             .iter()
@@ -465,7 +479,12 @@ impl Seen {
             Role::Polarisation | Role::Unknown(Look::Polarisation) => (self.varies, "a polarisation"),
             Role::Sample | Role::Unknown(Look::Sample) => (self.varies, "the name of a sample"),
             Role::Unit | Role::Unknown(Look::Unit) => (self.varies, "a unit"),
-            Role::Repeat | Role::SigmaLn | Role::Value(_) | Role::Unknown(Look::Other) => (false, ""),
+            Role::Repeat
+            | Role::SigmaLn
+            | Role::OwnAbsolute
+            | Role::OwnRelative
+            | Role::Value(_)
+            | Role::Unknown(Look::Other) => (false, ""),
         };
         if !matters {
             return Ok(());

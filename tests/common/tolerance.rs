@@ -236,7 +236,7 @@ pub const IDEAL_F32: Tolerance = Tolerance(1e-7);
 pub const PIPED_RMS: Tolerance = Tolerance(0.03);
 /// A factor of noise beyond its range; rounding of the quotient it is known by.
 pub const PRINTED: Tolerance = Tolerance(1e-15);
-/// Largest relative error of a parameter from a scan whose noise the weights make up for; measured 1.8e-10.
+/// Largest relative error of a parameter from a scan whose noise the weights make up for; measured 1.9e-12.
 pub const WEIGHTED: Tolerance = Tolerance(5e-12);
 /// Relative difference between a genuine ASTM file and a table of six digits that others made of it; measured 3.5e-6.
 pub const GARNET_TABLE: Tolerance = Tolerance(5e-6);
@@ -255,7 +255,7 @@ pub const PROFILE_POINT: Tolerance = Tolerance(5e-15);
 pub const NOISE_SIZE: Tolerance = Tolerance(0.02);
 /// Threshold of 95 % for rho_d from 100 copies, over that of F, less 1; 100 copies know it to 0.2.
 pub const CALIBRATED: Tolerance = Tolerance(0.2);
-/// chi^2 against the rms residual over the standard deviation that every sample has; relative; measured 1.1e-16.
+/// chi^2 against the rms residual over the standard deviation that every sample has; relative; measured 3.3e-15.
 pub const CHI2: Tolerance = Tolerance(5e-15);
 /// AICc and BIC against their formulas; relative; measured 0.
 pub const CRITERION: Tolerance = Tolerance(1e-15);

@@ -1,4 +1,8 @@
 //! What is known of the instrument takes part in a fit, and gives the actual values back where without it they are missed.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "simulated scans may use std's functions; the code under test may not"
+)]
 
 use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::derived;

@@ -145,7 +145,8 @@ fn a_run_that_stands_apart_is_named() {
     );
     let number = |name: &str| rho_d["budget"][name].as_f64().unwrap();
     assert!((number("type_b") / number("mean") / 0.02 - 1.0).abs() < 1e-9);
-    assert!(((number("type_a").powi(2) + number("type_b").powi(2)).sqrt() / number("combined") - 1.0).abs() < 1e-9);
+    let [a, b] = [number("type_a"), number("type_b")];
+    assert!(((a * a + b * b).sqrt() / number("combined") - 1.0).abs() < 1e-9);
     assert!((number("coverage_factor") * number("combined") / number("expanded") - 1.0).abs() < 1e-9);
     // A width takes nothing from the calibration.
     let width = found["quantities"]

@@ -3,6 +3,7 @@
 pub mod abg;
 pub mod bird;
 pub mod constants;
+pub mod form;
 pub mod glsl;
 pub mod mitsuba;
 pub mod model;

@@ -126,12 +126,31 @@ pub fn label(file: &str, scan: Option<&str>) -> String {
 /// The first file that is missing, not understood, or leaves a doubt about what was measured: with its line and column.
 pub fn read(paths: &[PathBuf], options: &ReadOptions, stdin: &mut dyn Read) -> Result<Vec<Measurement>, Error> {
     once(paths)?;
-    let each = join::options_of_each(options, paths.len())?;
+    let files = paths.iter();
+    let files = files.map(|path| Ok((path.display().to_string(), bytes_of(path, stdin)?)));
+    read_each(files, paths.len(), options)
+}
+
+/// The same of files whose bytes are at hand, which are only named here.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_named(files: &[&(String, Vec<u8>)], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
+    let each = files.iter().map(|(name, bytes)| Ok((name.clone(), bytes)));
+    read_each(each, files.len(), options)
+}
+
+/// Reads one file after the other, and holds the bytes of one at a time.
+fn read_each<B: AsRef<[u8]>>(
+    given: impl Iterator<Item = Result<(String, B), Error>>,
+    count: usize,
+    options: &ReadOptions,
+) -> Result<Vec<Measurement>, Error> {
+    let each = join::options_of_each(options, count)?;
     let mut files = Vec::new();
-    for (path, options) in paths.iter().zip(&each) {
-        let file = path.display().to_string();
-        let bytes = bytes_of(path, stdin)?;
-        let scans = raw_scans(&file, &bytes, options).map_err(|error| error.in_file(&file))?;
+    for (file, options) in given.zip(&each) {
+        let (file, bytes) = file?;
+        let scans = raw_scans(&file, bytes.as_ref(), options).map_err(|error| error.in_file(&file))?;
         files.push((file, scans));
     }
     if options.one_scan {

@@ -1,5 +1,7 @@
 //! What the options of the command line tell of instrument and sample beside the samples.
 
+use serde::Deserialize;
+
 use crate::analysis::reflectance::reflectance;
 use crate::engine::{FitOptions, Instrument, Limit, Material, Model, Precision, Prior, Values};
 use crate::error::{Error, shown};
@@ -11,7 +13,8 @@ const OFFSETS: f64 = 10.0;
 
 /// What is known beside the samples: the options that every command has which fits scans of an instrument.
 #[cfg_attr(feature = "cli", derive(clap::Args))]
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct InstrumentArguments {
     /// What a parameter is known to be from elsewhere, such as n from ellipsometry, with its standard uncertainty, in every model that has it; repeatable
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME=MEAN+-SIGMA"))]

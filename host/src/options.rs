@@ -5,23 +5,27 @@ use brdfit_core::brdf::ALL;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 #[cfg(feature = "cli")]
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::{Deserialize, Deserializer};
 
 use crate::analysis::choose::{Wanted, sets};
 use crate::engine::{FitOptions, Material, Method, Model, Precision};
 use crate::error::{Error, shown};
 use crate::instrument::InstrumentArguments;
-#[cfg(feature = "cli")]
 use crate::names::{METHODS, PRECISIONS};
 use crate::parameters::{AUTO, Range, apply, check, models, names_of, parameter};
 use crate::terms::terms;
 use crate::until::until;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
+///
+/// From JSON it has the names and words of the command line, such as `{"method": "paper", "fix": ["n=1.5"]}`.
 #[cfg_attr(feature = "cli", derive(clap::Args))]
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct SearchArguments {
     /// How to search: candidates and short fits, or the paper's full fits from uniform starts
     #[cfg_attr(feature = "cli", arg(long, value_name = "METHOD", value_parser = one_of(&METHODS), default_value = METHODS[0].0))]
+    #[serde(deserialize_with = "method")]
     pub method: Method,
     /// Number of starts [default: the paper's method 250; the other as many as the scan needs, 435 at most, and of more than that all are made]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000)))]
@@ -52,6 +56,7 @@ pub struct SearchArguments {
     pub instrument: InstrumentArguments,
     /// Number type of the computation
     #[cfg_attr(feature = "cli", arg(long, value_name = "PRECISION", value_parser = one_of(&PRECISIONS), default_value = PRECISIONS[0].0))]
+    #[serde(deserialize_with = "precision")]
     pub precision: Precision,
     /// Number of threads, which changes no bit [default: all]
     #[cfg_attr(feature = "cli", arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024)))]
@@ -76,6 +81,22 @@ impl Default for SearchArguments {
     }
 }
 
+fn method<'de, D: Deserializer<'de>>(from: D) -> Result<Method, D::Error> {
+    named(from, &METHODS)
+}
+
+fn precision<'de, D: Deserializer<'de>>(from: D) -> Result<Precision, D::Error> {
+    named(from, &PRECISIONS)
+}
+
+fn named<'de, D: Deserializer<'de>, T: Copy>(from: D, known: &[(&str, T)]) -> Result<T, D::Error> {
+    let name = String::deserialize(from)?;
+    let found = known.iter().find(|(known, _)| *known == name);
+    found
+        .map(|(_, value)| *value)
+        .ok_or_else(|| serde::de::Error::custom(format!("there is no '{name}'")))
+}
+
 /// One of these, by its name.
 #[cfg(feature = "cli")]
 fn one_of<T: Clone + Send + Sync>(known: &'static [(&'static str, T)]) -> impl TypedValueParser<Value = T> {
@@ -96,6 +117,9 @@ impl SearchArguments {
     /// # Errors
     /// Terms or bounds that make no sense.
     pub fn wanted(&self) -> Result<Wanted, Error> {
+        if self.starts == Some(0) {
+            return Err(Error::new("--starts cannot be 0").help("take 1 or more"));
+        }
         let models = models(&self.model)?;
         for text in self.bounds.iter().chain(&self.fix).chain(&self.instrument.prior) {
             known(&models, text)?;
@@ -247,6 +271,70 @@ mod tests {
     use brdfit_core::brdf::{DIFFUSE, SURFACE};
 
     use super::*;
+
+    #[cfg(feature = "cli")]
+    #[test]
+    fn json_says_what_words_say() {
+        use clap::Parser;
+
+        use crate::input::ReadOptions;
+
+        #[derive(Parser)]
+        struct Both {
+            #[command(flatten)]
+            read: ReadOptions,
+            #[command(flatten)]
+            search: SearchArguments,
+        }
+
+        let words = "brdfit --input-format astm --column R --quantity log10-brdf --angles rad --forward negative --value-unit percent \
+             --wavelength-unit per-cm --polarisation mean --columns theta_s=2,brdf=3 --split a --ignore b --repeats --theta-i=-5,20 \
+             --one-scan --merl-whole --drop-invalid --mask-retro 6 --max-angle 85 --max-value 1e3 --thin 2 --coverage 2 --weights equal \
+             --sigma-floor 0.01 --weight-angle 60=0.5 --method paper --starts 7 --seed 9 --model ggx --terms auto --bounds n=1:2 \
+             --fix kappa=0 --robust --precision f32";
+        let read = r#"{"input-format": "astm", "column": ["R"], "quantity": "log10-brdf", "angles": "rad", "forward": "negative",
+            "value-unit": "percent", "wavelength-unit": "per-cm", "polarisation": "mean", "columns": ["theta_s=2", "brdf=3"],
+            "split": ["a"], "ignore": ["b"], "repeats": true, "theta-i": [-5, 20], "one-scan": true, "merl-whole": true,
+            "drop-invalid": true, "mask-retro": 6, "max-angle": 85, "max-value": 1e3, "thin": 2, "coverage": 2, "weights": "equal",
+            "sigma-floor": 0.01, "weight-angle": ["60=0.5"]}"#;
+        let search = r#"{"method": "paper", "starts": 7, "seed": 9, "model": "ggx", "terms": "auto", "bounds": ["n=1:2"],
+            "fix": ["kappa=0"], "robust": true, "precision": "f32"}"#;
+        let both = Both::try_parse_from(words.split_whitespace()).unwrap_or_else(|error| panic!("{error}"));
+        let read: ReadOptions = serde_json::from_str(read).unwrap();
+        let search: SearchArguments = serde_json::from_str(search).unwrap();
+        assert_eq!(read, both.read);
+        assert_eq!(format!("{search:?}"), format!("{:?}", both.search));
+        read.check().unwrap();
+
+        let usual = Both::try_parse_from(["brdfit"]).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(usual.read, serde_json::from_str("{}").unwrap());
+        assert_eq!(
+            format!("{:?}", usual.search),
+            format!("{:?}", SearchArguments::default())
+        );
+        for wrong in [
+            r#"{"mask-retro": 181}"#,
+            r#"{"max-angle": -1}"#,
+            r#"{"theta-i": [90]}"#,
+            r#"{"coverage": 0}"#,
+            r#"{"sigma-floor": -1}"#,
+            r#"{"thin": 0}"#,
+        ] {
+            assert!(
+                serde_json::from_str::<ReadOptions>(wrong).unwrap().check().is_err(),
+                "{wrong}"
+            );
+        }
+        for wrong in [
+            r#"{"colour": 1}"#,
+            r#"{"columns": ["x=1"]}"#,
+            r#"{"input-format": "doc"}"#,
+            r#"{"weight-angle": ["60"]}"#,
+        ] {
+            assert!(serde_json::from_str::<ReadOptions>(wrong).is_err(), "{wrong}");
+        }
+        assert!(serde_json::from_str::<SearchArguments>(r#"{"method": "mine"}"#).is_err());
+    }
 
     #[test]
     fn refuses_bad_bounds() {

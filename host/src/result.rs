@@ -3,8 +3,12 @@
 pub mod beside;
 pub mod cell;
 pub mod columns;
+pub mod compare;
+pub mod converge;
 mod csv;
+pub mod inspect;
 pub mod json;
+pub mod profile;
 pub mod text;
 pub mod words;
 

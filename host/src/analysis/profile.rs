@@ -8,6 +8,7 @@ use super::misfit;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
+pub mod findings;
 pub mod hold;
 
 use calibrate::{LEVELS, threshold};

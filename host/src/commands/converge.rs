@@ -1,22 +1,21 @@
 //! `brdfit converge`: how fast each method comes how near to the best known fit of a scan.
 
-mod write;
-
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 use indicatif::ProgressBar;
 
-use crate::analysis::converge::{METHODS, MethodStudy, ScanStudy, study};
+use crate::analysis::converge::{METHODS, study};
 use crate::analysis::paper_sets::{Subject, paper_scans};
-use crate::engine::{FitOptions, Method, Precision};
+use crate::engine::FitOptions;
 use crate::error::Error;
 use crate::input::{self, ReadOptions, left_out};
 use crate::options::all_parameters;
 use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::parameters::model;
-use crate::plot::{self, picture};
+use crate::plot::picture;
+use crate::result::converge as write;
 use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
 use crate::terms::terms;
@@ -104,35 +103,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         TableFormat::Csv => write::csv(&studies),
     };
     if let Some(picture) = &picture {
-        picture::save(picture, &plot::converge_svg(&panels(&studies), arguments.seeds))?;
+        picture::save(picture, &write::svg(&studies, arguments.seeds))?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     left_out::note(measurement.as_slice(), streams.errors);
     Ok(())
-}
-
-/// One panel a scan: colours are those of the methods, and single precision has dashes.
-fn panels(studies: &[ScanStudy]) -> Vec<plot::ConvergePanel> {
-    let line = |method: &MethodStudy, &(by, precision): &(Method, Precision)| plot::ConvergeLine {
-        label: format!("{} {}", method.method, method.precision),
-        colour: usize::from(by == Method::Paper),
-        dashed: precision == Precision::F32,
-        points: method
-            .by_time
-            .iter()
-            .map(|point| (point.at, [point.excess.p10, point.excess.median, point.excess.p90]))
-            .collect(),
-    };
-    let panel = |scan: &ScanStudy| plot::ConvergePanel {
-        title: scan.name.clone(),
-        lines: scan
-            .methods
-            .iter()
-            .zip(&METHODS)
-            .map(|(study, method)| line(study, method))
-            .collect(),
-    };
-    studies.iter().map(panel).collect()
 }
 
 fn progress(shown: bool, scans: usize, seeds: u32) -> ProgressBar {

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::error::Error;
+use crate::export::form::{Form, write};
 use crate::export::model::Model;
-use crate::export::{abg, bird, constants, glsl, mitsuba, native, openmaterial, renderers, rgl, zemax};
 use crate::input::{STDIN, bytes};
 use crate::options::all_parameters;
 use crate::output::{deliver, target};
@@ -54,38 +54,6 @@ pub struct Arguments {
     output: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Form {
-    /// Zemax tabular BSDF
-    Zemax,
-    /// Zemax OpticStudio's own ABg, of --model abg
-    ZemaxAbg,
-    /// FRED's own ABg as a script, of --model abg
-    Fred,
-    /// BRDF Explorer, .brdf
-    Glsl,
-    /// Mitsuba 3, the exact model in Python
-    Mitsuba,
-    /// Mitsuba 3, the nearest rough conductor on a diffuse base
-    MitsubaNative,
-    /// Mitsuba 3, the nearest principled BSDF
-    MitsubaPrincipled,
-    /// glTF 2.0, the nearest material
-    Gltf,
-    /// MaterialX, the nearest gltf_pbr
-    Materialx,
-    /// RGL tensor file for Mitsuba's measured BSDF, .bsdf
-    Rgl,
-    /// Constants for C
-    C,
-    /// Constants for Rust with brdfit-core
-    Rust,
-    /// EURAMET BiRD JSON, the model with its uncertainties
-    Bird,
-    /// ASAM OpenMATERIAL 3D BRDF, .xompt
-    Openmaterial,
-}
-
 /// Runs the subcommand.
 ///
 /// # Errors
@@ -116,67 +84,11 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
             model.name.clone_from(name);
         }
     }
-    let (text, deviation) = write(arguments, &models)?;
+    let (text, deviation) = write(arguments.to, &models, arguments.wavelength)?;
     if let Some(deviation) = deviation {
         let _ = writeln!(streams.errors, "{deviation}");
     }
     deliver(&text, target.as_ref(), streams.output)
-}
-
-/// The file, and how far its model is off where that is not the fitted one.
-fn write(arguments: &Arguments, models: &[Model]) -> Result<(Vec<u8>, Option<String>), Error> {
-    let one = || match models {
-        [model] => Ok(model),
-        several => {
-            Err(Error::new(format!("there are {} results", several.len())).help("choose one with --index N, from 1 on"))
-        }
-    };
-    let (text, deviation) = match arguments.to {
-        Form::MitsubaNative => with_deviation(native::write(one()?)?),
-        Form::MitsubaPrincipled => with_deviation(renderers::mitsuba_principled(models)?),
-        Form::Gltf => with_deviation(renderers::gltf(models)?),
-        Form::Materialx => with_deviation(renderers::materialx(models)?),
-        Form::Rgl => return Ok((rgl::write(&by_length(arguments, models)?), None)),
-        Form::Zemax => {
-            let model = one()?;
-            (zemax::write(model), zemax::clamped(model))
-        }
-        Form::ZemaxAbg => (abg::zemax(one()?)?, None),
-        Form::Fred => (abg::fred(one()?)?, None),
-        Form::Glsl => (glsl::write(one()?)?, None),
-        Form::Mitsuba => (mitsuba::write(one()?)?, None),
-        Form::C => (constants::c(one()?)?, None),
-        Form::Rust => (constants::rust(one()?)?, None),
-        Form::Bird => (bird::write(one()?), None),
-        Form::Openmaterial => {
-            let model = one()?;
-            (openmaterial::write(model, length(arguments, model)?), None)
-        }
-    };
-    Ok((text.into_bytes(), deviation))
-}
-
-fn with_deviation((text, deviation): (String, String)) -> (String, Option<String>) {
-    (text, Some(deviation))
-}
-
-/// The models with their wavelengths in nm, rising.
-fn by_length<'a>(arguments: &Arguments, models: &'a [Model]) -> Result<Vec<(f64, &'a Model)>, Error> {
-    let lengths = models.iter().map(|model| Ok((length(arguments, model)?, model)));
-    let mut lengths = lengths.collect::<Result<Vec<_>, Error>>()?;
-    lengths.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if lengths.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-        return Err(Error::new("two results have the same wavelength").help("choose others with --index"));
-    }
-    Ok(lengths)
-}
-
-/// The wavelength of a form that has one, nm.
-fn length(arguments: &Arguments, model: &Model) -> Result<f64, Error> {
-    arguments.wavelength.or(model.wavelength).ok_or_else(|| {
-        Error::new("this form has a wavelength, and the name of the scan does not tell it")
-            .help("give --wavelength in nm")
-    })
 }
 
 /// A wavelength that the format admits: 1 nm to 17.16 mm.

@@ -1,18 +1,14 @@
 //! `brdfit inspect`: what was read of a file, before any fit.
 
-mod json;
-mod text;
-
 use std::path::PathBuf;
 
-use brdfit_core::geometry::Sample;
 use clap::Args;
 
-use crate::analysis::hints::{self, Hint};
 use crate::error::Error;
-use crate::input::{self, Measurement, ReadOptions, own, plane};
+use crate::input::{self, ReadOptions, own};
 use crate::output::{self, Format, deliver};
 use crate::plot::{self, picture};
+use crate::result::inspect::{Inspected, json, text};
 use crate::streams::Streams;
 use crate::target::Target;
 
@@ -62,75 +58,8 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     }
     let scans: Vec<Inspected> = measurements.iter().map(Inspected::new).collect();
     let summary = match arguments.format {
-        Format::Text => text::text(&scans),
-        Format::Json => json::json(&scans),
+        Format::Text => text(&scans),
+        Format::Json => json(&scans),
     };
     deliver(summary.as_bytes(), None, streams.output)
-}
-
-/// What is said of one scan.
-struct Inspected<'a> {
-    measurement: &'a Measurement,
-    angles: Vec<Angle>,
-    hints: Vec<Hint>,
-}
-
-/// The samples of one angle of incidence; angles in degrees, BRDF in sr^-1.
-struct Angle {
-    theta_i: f64,
-    samples: usize,
-    in_plane: usize,
-    /// Least and largest scattering angle, signed in plane.
-    theta_s: (f64, f64),
-    /// Least and largest azimuth, if some samples are out of plane.
-    delta_phi: Option<(f64, f64)>,
-    brdf: (f64, f64),
-    /// Scattering angle of the brightest sample in plane.
-    brightest: Option<f64>,
-}
-
-impl<'a> Inspected<'a> {
-    fn new(measurement: &'a Measurement) -> Self {
-        let groups = plane::by_angle(&measurement.samples);
-        Inspected {
-            measurement,
-            angles: groups
-                .iter()
-                .map(|(theta_i, group)| Angle::new(*theta_i, group))
-                .collect(),
-            hints: hints::of_scan(measurement),
-        }
-    }
-}
-
-impl Angle {
-    fn new(theta_i: f64, group: &[&Sample<f64>]) -> Angle {
-        let signed = |sample: &&&Sample<f64>| plane::signed_theta_s(sample);
-        let in_plane: Vec<&&Sample<f64>> = group.iter().filter(|sample| signed(sample).is_some()).collect();
-        let theta_s = group
-            .iter()
-            .map(|sample| plane::signed_theta_s(sample).unwrap_or(sample.theta_s.to_degrees()));
-        let brightest = in_plane.iter().max_by(|a, b| a.brdf.total_cmp(&b.brdf));
-        Angle {
-            theta_i: tidy(theta_i.to_degrees()),
-            samples: group.len(),
-            in_plane: in_plane.len(),
-            theta_s: range(theta_s.map(tidy)),
-            delta_phi: (in_plane.len() < group.len())
-                .then(|| range(group.iter().map(|sample| tidy(sample.delta_phi.to_degrees())))),
-            brdf: range(group.iter().map(|sample| sample.brdf)),
-            brightest: brightest.and_then(|sample| plane::signed_theta_s(sample)).map(tidy),
-        }
-    }
-}
-
-/// Degrees as they were measured, without what the way through radians adds.
-fn tidy(degrees: f64) -> f64 {
-    (degrees * 1e9).round() / 1e9
-}
-
-fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-        (low.min(x), high.max(x))
-    })
 }

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-#[cfg(feature = "cli")]
 use super::formats;
 use super::options::ReadOptions;
 use super::raw::RawScan;
@@ -71,10 +70,23 @@ impl Serialize for Format {
     }
 }
 
+impl<'de> Deserialize<'de> for Format {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        let known = all().iter().find(|format| format.name == name);
+        known.copied().ok_or_else(|| serde::de::Error::custom("no such format"))
+    }
+}
+
+/// All formats, in the order in which they are tried.
+pub fn all() -> &'static [Format] {
+    &formats::ALL
+}
+
 #[cfg(feature = "cli")]
 impl clap::ValueEnum for Format {
     fn value_variants<'a>() -> &'a [Format] {
-        &formats::ALL
+        all()
     }
 
     fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {

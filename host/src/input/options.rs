@@ -1,11 +1,10 @@
 //! What the user says about files, and what they were taken for.
 
-#[cfg(feature = "cli")]
 mod parse;
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::about::Kind;
 use super::format::Format;
@@ -14,9 +13,12 @@ use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, Wavelengt
 use crate::error::Error;
 
 /// How files are read; all but `input_format` hold for each scan.
+///
+/// From JSON it has the names and words of the command line, such as `{"mask-retro": 6, "columns": ["theta_s=2"]}`; [`ReadOptions::check`] is for those that do not come through the command line.
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 #[cfg_attr(feature = "cli", command(next_help_heading = "What the files hold"))]
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all(deserialize = "kebab-case"))]
 pub struct ReadOptions {
     /// Format of the files [default: known by their content]
     #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "FORMAT"))]
@@ -44,6 +46,7 @@ pub struct ReadOptions {
     pub polarisation: Polarisation,
     /// What columns hold, by their numbers or names, such as theta_s=2,brdf=3
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME=COLUMN,...", value_delimiter = ',', value_parser = super::part::parse, help_heading = TABLES))]
+    #[serde(deserialize_with = "parse::columns")]
     pub columns: Vec<(Part, String)>,
     /// Makes a scan of each content of these columns
     #[cfg_attr(feature = "cli", arg(long, value_name = "COLUMN,...", value_delimiter = ',', help_heading = TABLES))]
@@ -98,6 +101,7 @@ pub struct ReadOptions {
     pub sigma_floor: f64,
     /// Factor of the residuals at one angle of incidence; repeatable
     #[cfg_attr(feature = "cli", arg(long, value_name = "DEG=FACTOR", value_parser = parse::weight_angle, help_heading = "Weights"))]
+    #[serde(deserialize_with = "parse::weights")]
     pub weight_angle: Vec<(f64, f64)>,
 }
 
@@ -106,6 +110,29 @@ pub struct ReadOptions {
 const TABLES: &str = "Tables";
 
 impl ReadOptions {
+    /// Refuses numbers that the command line would refuse.
+    ///
+    /// # Errors
+    /// The first of them.
+    pub fn check(&self) -> Result<(), Error> {
+        let all: [(&str, &[f64], parse::Allowed); 5] = [
+            ("--theta-i", &self.theta_i, parse::within_90),
+            ("--mask-retro", self.mask_retro.as_slice(), parse::within_180),
+            ("--max-angle", self.max_angle.as_slice(), parse::within_180),
+            ("--coverage", self.coverage.as_slice(), parse::above_0),
+            ("--sigma-floor", &[self.sigma_floor], parse::from_0),
+        ];
+        for (option, values, allowed) in all {
+            for &value in values {
+                allowed(value).map_err(|why| Error::new(format!("{option} cannot be {value}")).help(why))?;
+            }
+        }
+        if self.thin == Some(0) {
+            return Err(Error::new("--thin cannot be 0").help("keep one in 1 rows or more"));
+        }
+        Ok(())
+    }
+
     /// Refuses options that are of several files together.
     ///
     /// # Errors
@@ -154,7 +181,7 @@ impl ReadOptions {
 
 /// Where weights come from.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weights {
     /// Standard deviations or weights in the file, if it has any

@@ -1,13 +1,13 @@
 //! What the numbers of a file mean: units of angles, the quantity of the values, the sign of theta_s.
 
 use brdfit_core::real::Real;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::number::shortest;
 
 /// The unit of angles.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Angles {
     /// Degrees
@@ -65,7 +65,7 @@ pub fn azimuth(degrees: f64) -> f64 {
 
 /// Where theta_s is positive.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Forward {
     /// The specular peak is at theta_s = +theta_i, or at an azimuth of 180 degrees
@@ -77,7 +77,7 @@ pub enum Forward {
 
 /// What the numbers of the values are counted in.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ValueUnit {
     /// Their own unit, as they stand
@@ -88,7 +88,7 @@ pub enum ValueUnit {
 
 /// The unit of wavelengths.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WavelengthUnit {
     /// Nanometres
@@ -105,7 +105,7 @@ pub enum WavelengthUnit {
 
 /// How rows of the two polarisations are taken.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Polarisation {
     /// Each is a scan of its own
@@ -117,7 +117,7 @@ pub enum Polarisation {
 
 /// What is tabulated; f is the BRDF in sr^-1.
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// f

@@ -2,16 +2,16 @@
 
 use std::fmt::Write;
 
-use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
+use crate::analysis::profile::findings::Findings;
 use crate::analysis::profile::{End, Interval};
 use crate::number::{percent, significant, two};
 use crate::result::text::choice;
 use crate::result::words::correlated;
 
 /// The table of the intervals.
-pub fn write(findings: &Findings) -> String {
+pub fn text(findings: &Findings) -> String {
     let known = &findings.outcome.uncertainty;
     let mut page = format!(
         "{}\n  {} samples, residual {}, {} degrees of freedom\n\n",

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::findings::Findings;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
+use crate::analysis::profile::findings::Findings;
 use crate::analysis::profile::{Interval, Profile};
 use crate::document;
 use crate::engine::Outcome;
@@ -76,7 +76,7 @@ struct Percentiles {
 }
 
 /// One object.
-pub fn write(findings: &Findings) -> String {
+pub fn json(findings: &Findings) -> String {
     let known = &findings.outcome.uncertainty;
     let document = Document {
         file: &findings.name,

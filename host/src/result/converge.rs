@@ -1,12 +1,14 @@
-//! The study as text, JSON and CSV.
+//! A study of convergence as text, JSON, CSV and SVG.
 
 use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::analysis::converge::{Band, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
+use crate::analysis::converge::{Band, METHODS, MethodStudy, Point, REPEATS, Reached, ScanStudy, WITHIN};
 use crate::document::{self, write_row};
+use crate::engine::{Method, Precision};
 use crate::number::shortest;
+use crate::plot;
 use crate::result::json::provenance::Provenance;
 
 #[derive(Serialize)]
@@ -152,4 +154,33 @@ fn errors(out: &mut String, methods: &[MethodStudy]) {
         ];
         let _ = writeln!(out, "{name:12} {rho_d:>18}  {m:>22}  {curve:>22}");
     }
+}
+
+/// Excess cost over run time.
+pub fn svg(studies: &[ScanStudy], seeds: u32) -> String {
+    plot::converge_svg(&panels(studies), seeds)
+}
+
+/// One panel a scan: colours are those of the methods, and single precision has dashes.
+fn panels(studies: &[ScanStudy]) -> Vec<plot::ConvergePanel> {
+    let line = |method: &MethodStudy, &(by, precision): &(Method, Precision)| plot::ConvergeLine {
+        label: format!("{} {}", method.method, method.precision),
+        colour: usize::from(by == Method::Paper),
+        dashed: precision == Precision::F32,
+        points: method
+            .by_time
+            .iter()
+            .map(|point| (point.at, [point.excess.p10, point.excess.median, point.excess.p90]))
+            .collect(),
+    };
+    let panel = |scan: &ScanStudy| plot::ConvergePanel {
+        title: scan.name.clone(),
+        lines: scan
+            .methods
+            .iter()
+            .zip(&METHODS)
+            .map(|(study, method)| line(study, method))
+            .collect(),
+    };
+    studies.iter().map(panel).collect()
 }

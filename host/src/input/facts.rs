@@ -113,7 +113,8 @@ fn pairs(remark: &str) -> Vec<(&str, &str)> {
     let number = || {
         let at = remark.find(|c: char| c.is_ascii_digit() || "+-−".contains(c))?;
         let (key, value) = remark.split_at(at);
-        Some((key.strip_suffix(char::is_whitespace)?, value)).filter(|(key, _)| !key.trim().is_empty())
+        let role = role::role(&Head::new(key.strip_suffix(char::is_whitespace)?));
+        matches!(role, Role::ThetaI | Role::Wavelength).then_some((key, value))
     };
     let cells = remark.split_once(['\t', ';', ',']).or_else(number);
     cells

@@ -29,8 +29,11 @@ fn is(text: &str) -> bool {
         // `Incident Angle: 20` stands above other tables.
         let is_remark = corner.ends_with([':', '=']);
         let is_head = !is_remark && !is_number(corner) && !angles.is_empty() && angles.iter().all(is_angle);
-        if is_head || !lengths.is_empty() {
+        if is_head && lengths.is_empty() {
             lengths.push(cells.len());
+        } else if !lengths.is_empty() {
+            // Pairs such as `AOI,20` and `Wavelength,550` may stand above a table.
+            lengths.push(if angle(corner).is_some() { cells.len() } else { 0 });
         }
         if is_head && lengths.len() == 1 {
             Ok(())
@@ -223,7 +226,8 @@ mod tests {
     fn a_header_of_names_or_no_header_is_no_matrix() {
         assert!(!is("theta_i,theta_s,brdf\n1,2,3\n") && !is("45,-85,0.03\n") && !is("") && !is("word\n"));
         assert!(is("NaN 10 60\n1 2 3\n"));
-        // Wavelengths, and angles of scattering.
+        // Wavelengths, angles of scattering, and what stands above a table.
+        assert!(!is("AOI,20\nWavelength,550\ntheta_s,brdf\n1,2\n"));
         assert!(!is("theta_s,450,550\n1,2,3\n") && !is("AOI,theta_s=10,theta_s=20\n1,2,3\n"));
         let error = read(",10,20\n1,2\n").unwrap_err();
         assert_eq!(

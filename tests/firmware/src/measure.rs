@@ -15,7 +15,7 @@ use brdfit_core::geometry::{Block, Geometry, LANES, LobeGeometry, Observation, S
 use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
-use brdfit_core::search::{CANDIDATES, Found, search};
+use brdfit_core::search::{CANDIDATES, FITS, Search};
 use cortex_m_rt::entry;
 use programs::scan;
 use semihosting::process;
@@ -43,6 +43,9 @@ const fn digits(text: &[u8]) -> u8 {
     }
     value
 }
+
+/// The memory of a search, which the caller owns.
+type State<R> = Search<R, P, 4, FITS>;
 
 #[entry]
 fn main() -> ! {
@@ -103,8 +106,10 @@ fn image<R: Real>() {
     if USE == b'f' {
         black_box(lm::fit(&scan, &bounds(), start(), &Options::default()).x);
     } else {
-        let found = search(&scan, &bounds(), 0, CANDIDATES, &Options::default());
-        black_box(found.best.x);
+        let mut state = State::new();
+        state.begin(&bounds(), 0, CANDIDATES, &Options::default());
+        while state.step(&scan) {}
+        black_box(state.best().map(|best| best.x));
     }
 }
 
@@ -114,7 +119,8 @@ fn costs<R: Real>() {
     let clock = Clock::start();
     print("bytes_blocks", size_of_val(&blocks));
     print("bytes_fit", size_of::<Fit<R, P>>());
-    print("bytes_found", size_of::<Found<R, P>>());
+    print("bytes_search", size_of::<State<R>>());
+    let mut state = State::new();
     measure(&clock, "observation", || observation::<R>());
     measure(&clock, "cost", || pass_cost(&scan));
     measure(&clock, "linearize", || pass_linearize(&scan));
@@ -122,7 +128,7 @@ fn costs<R: Real>() {
     measure(&clock, "steps", || passes = ten_steps(&scan));
     print("steps", passes as usize - 1);
     measure(&clock, "fit", || whole_fit(&scan));
-    measure(&clock, "search", || whole_search(&scan));
+    measure(&clock, "search", || whole_search(&scan, &mut state));
 }
 
 // Each has a stack frame of its own, as it would have in firmware.
@@ -152,8 +158,10 @@ fn whole_fit<R: Real>(scan: &Scan<R, TERMS, P>) {
     black_box(&lm::fit(scan, &bounds(), black_box(start()), &Options::default()));
 }
 #[inline(never)]
-fn whole_search<R: Real>(scan: &Scan<R, TERMS, P>) {
-    black_box(&search(scan, &bounds(), black_box(0), CANDIDATES, &Options::default()));
+fn whole_search<R: Real>(scan: &Scan<R, TERMS, P>, state: &mut State<R>) {
+    state.begin(&bounds(), black_box(0), CANDIDATES, &Options::default());
+    while state.step(scan) {}
+    black_box(state);
 }
 
 /// Instructions and bytes of stack of a call.

@@ -13,6 +13,8 @@
 /* The compiler gives this memory; the library has none. */
 static brdfit_block_f32 blocks[BRDFIT_BLOCKS(SAMPLES)];
 static brdfit_fit_f32 fit;
+static brdfit_search_state_f32 state;
+static uint8_t flash[BRDFIT_SAVED_SIZE];
 
 static void print_number(const char *name, float value) {
     uint32_t words[sizeof value / 4];
@@ -109,6 +111,35 @@ static brdfit_error in_pieces(const brdfit_scan_f32 *scan, const brdfit_options_
     return error;
 }
 
+/* One pass at a time, as between two movements of a goniometer; after a while a reset interrupts it. */
+static brdfit_error in_steps(const brdfit_scan_f32 *scan, const brdfit_options_f32 *options) {
+    brdfit_found_f32 found;
+    brdfit_uncertainty_f32 known;
+    size_t length = 0;
+    uint32_t ended = 0, steps = 0;
+    brdfit_error error = brdfit_search_begin_f32(&state, options);
+    while (!error && !ended) {
+        error = brdfit_search_step_f32(&state, scan, 1, &ended);
+        if (++steps == 100 && !error) {
+            error = brdfit_search_save_f32(&state, flash, sizeof flash, &length);
+            memset(&state, 0, sizeof state);
+            if (!error)
+                error = brdfit_search_restore_f32(&state, options, flash, length);
+        }
+    }
+    if (!error)
+        error = brdfit_search_found_f32(&state, NULL, 0, &found);
+    if (!error)
+        error = brdfit_uncertainty_at_f32(scan, options, &found.best.params, &known);
+    if (error)
+        return error;
+    printf("search in %u steps, over a reset\n", (unsigned)steps);
+    print_result(&found.best);
+    printf("  standard errors\n");
+    print_params(&known.standard_errors);
+    return BRDFIT_ERROR_NONE;
+}
+
 static void expect_error(const char *what, brdfit_error error) {
     printf("  %s: %s\n", what, brdfit_error_text(error));
 }
@@ -147,6 +178,8 @@ int main(void) {
         error = search(&scan, &options);
     if (!error)
         error = in_pieces(&scan, &options);
+    if (!error)
+        error = in_steps(&scan, &options);
     options.terms = BRDFIT_DIFFUSE | BRDFIT_SURFACE;
     if (!error)
         error = search(&scan, &options);

@@ -93,6 +93,14 @@ impl Parameter {
     pub const fn is_squared(&self) -> bool {
         matches!(self.role, Role::Absorption)
     }
+    /// Derivative of the parameter by the solver's coordinate, where that is `x`; 0 at kappa = 0, where there is none.
+    pub fn slope<R: Real>(&self, x: R) -> R {
+        match self.is_squared() {
+            false => R::ONE,
+            true if x > R::ZERO => R::of(0.5) / x.sqrt(),
+            true => R::ZERO,
+        }
+    }
     /// Is f linear in it?
     pub const fn is_weight(&self) -> bool {
         matches!(self.role, Role::Weight)

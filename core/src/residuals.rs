@@ -129,6 +129,11 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'
         x
     }
 
+    /// Derivatives of the parameters by the solver's coordinates: see [`Parameter::slope`].
+    pub fn slopes(x: &[R; P]) -> [R; P] {
+        core::array::from_fn(|k| M::PARAMETERS.get(k).map_or(R::ONE, |parameter| parameter.slope(x[k])))
+    }
+
     /// The model's parameters at solver coordinates.
     pub fn values(x: &[R; P]) -> [R; P] {
         let mut values = *x;

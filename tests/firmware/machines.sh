@@ -69,3 +69,15 @@ emulate() {
     timeout "${TIMEOUT:-300}" "$emulator" -M "$machine" "${extra[@]}" "${emulator_options[@]}" -nographic -monitor none -serial none \
         -semihosting-config "$semihosting" -kernel "$image" </dev/null
 }
+
+machines_folder=$PWD
+
+# Most stack below a call, in bytes: of an image and a part of the function's name, from the compiler's sizes of frames and the calls in the image.
+deepest_in() {
+    arm-none-eabi-objcopy -O binary --only-section=.stack_sizes --set-section-flags .stack_sizes=alloc "$1" "$1.stack_sizes"
+    {
+        od -An -v -tu1 -w1 "$1.stack_sizes"
+        echo code
+        arm-none-eabi-objdump -d --no-show-raw-insn "$1"
+    } | awk -v root="$2" -f "$machines_folder/deepest.awk"
+}

@@ -3,7 +3,7 @@
  * MIT or Apache-2.0, at your choice. Made by cbindgen from the Rust source: do not edit.
  *
  * Samples go into blocks of the caller (brdfit_scan_init, brdfit_scan_add), then brdfit_search finds
- * the global optimum, or brdfit_fit_begin, _run and _result make a fit from one start, step by step.
+ * the global optimum (brdfit_search_begin, _step and _found step by step), or brdfit_fit_begin, _run and _result make a fit from one start, step by step.
  * Names end in _f32 for float and in _f64 for double.
  *
  * Nothing allocates, does I/O, keeps a state of its own or blocks: any function may be called from any
@@ -111,6 +111,26 @@
 #define BRDFIT_FIT_SIZE_F64 768
 
 /**
+ * Size of a search in steps, in numbers of its type.
+ */
+#define BRDFIT_SEARCH_NUMBERS 960
+
+/**
+ * Size of a search in steps in float, bytes.
+ */
+#define BRDFIT_SEARCH_SIZE_F32 3840
+
+/**
+ * Size of a search in steps in double, bytes.
+ */
+#define BRDFIT_SEARCH_SIZE_F64 7680
+
+/**
+ * Bytes that brdfit_search_save_f32() or _f64() writes at most.
+ */
+#define BRDFIT_SAVED_SIZE 7680
+
+/**
  * pi: the delta_phi of samples in the plane of incidence; (float)BRDFIT_PI in single precision.
  */
 #define BRDFIT_PI 3.141592653589793
@@ -176,13 +196,17 @@ enum brdfit_error
    */
   BRDFIT_ERROR_TOO_FEW = -12,
   /**
-   * The scan or the fit was never begun, or has been overwritten.
+   * The scan, the fit or the search was never begun, or has been overwritten.
    */
   BRDFIT_ERROR_NOT_BEGUN = -13,
   /**
-   * No start gives a finite model.
+   * No start gives a finite model, or no fit has begun yet.
    */
   BRDFIT_ERROR_NO_FIT = -14,
+  /**
+   * Bytes are not a saved search of this version, these terms and this type of number, or were damaged.
+   */
+  BRDFIT_ERROR_SAVED = -15,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -432,6 +456,56 @@ typedef struct {
 } brdfit_found_f32;
 
 /**
+ * What the model needs to know of a pair of directions, first for the surface lobe, then for the volume lobe; dimensionless.
+ */
+typedef struct {
+  /**
+   * tan^2 theta_h and tan^2 theta_he (Eq. 13), 0 or more.
+   */
+  float tan2_theta_h[2];
+  /**
+   * cos theta_d and cos theta_de (Eq. 12), above 0, at most 1.
+   */
+  float cos_theta_d[2];
+  /**
+   * What else of f does not depend on the parameters, 0 or more.
+   */
+  float factor[2];
+} brdfit_geometry_f32;
+
+/**
+ * A search under way; it holds no pointers, and may be copied.
+ */
+typedef struct BRDFIT_ALIGNED(8) {
+  /**
+   * Not to be touched.
+   */
+  float opaque[BRDFIT_SEARCH_NUMBERS];
+} brdfit_search_state_f32;
+
+/**
+ * What a fit knows of its parameters, for residuals of equal and independent errors.
+ */
+typedef struct {
+  /**
+   * Standard errors; 0 of parameters that are absent, held or on a bound (of kappa at 0 too), very large where nothing is known.
+   */
+  brdfit_params_f32 standard_errors;
+  /**
+   * Correlations, -1 to 1, row by row in the order of brdfit_params; 0 where one is absent or held.
+   */
+  float correlations[36];
+  /**
+   * Standard deviation of a residual; infinite without degrees of freedom.
+   */
+  float scale;
+  /**
+   * Ratio of the largest to the least eigenvalue of the scaled J'J, 1 or more.
+   */
+  float condition;
+} brdfit_uncertainty_f32;
+
+/**
  * The six parameters of Eq. 14 and of GGX, dimensionless; those of absent terms are 0, but m and n are 1.
  */
 typedef struct {
@@ -633,6 +707,56 @@ typedef struct {
   uint32_t linearize_passes;
 } brdfit_found_f64;
 
+/**
+ * What the model needs to know of a pair of directions, first for the surface lobe, then for the volume lobe; dimensionless.
+ */
+typedef struct {
+  /**
+   * tan^2 theta_h and tan^2 theta_he (Eq. 13), 0 or more.
+   */
+  double tan2_theta_h[2];
+  /**
+   * cos theta_d and cos theta_de (Eq. 12), above 0, at most 1.
+   */
+  double cos_theta_d[2];
+  /**
+   * What else of f does not depend on the parameters, 0 or more.
+   */
+  double factor[2];
+} brdfit_geometry_f64;
+
+/**
+ * A search under way; it holds no pointers, and may be copied.
+ */
+typedef struct BRDFIT_ALIGNED(8) {
+  /**
+   * Not to be touched.
+   */
+  double opaque[BRDFIT_SEARCH_NUMBERS];
+} brdfit_search_state_f64;
+
+/**
+ * What a fit knows of its parameters, for residuals of equal and independent errors.
+ */
+typedef struct {
+  /**
+   * Standard errors; 0 of parameters that are absent, held or on a bound (of kappa at 0 too), very large where nothing is known.
+   */
+  brdfit_params_f64 standard_errors;
+  /**
+   * Correlations, -1 to 1, row by row in the order of brdfit_params; 0 where one is absent or held.
+   */
+  double correlations[36];
+  /**
+   * Standard deviation of a residual; infinite without degrees of freedom.
+   */
+  double scale;
+  /**
+   * Ratio of the largest to the least eigenvalue of the scaled J'J, 1 or more.
+   */
+  double condition;
+} brdfit_uncertainty_f64;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -750,6 +874,91 @@ brdfit_error brdfit_search_f32(const brdfit_scan_f32 *scan,
                                brdfit_found_f32 *found);
 
 /**
+ * What the model needs to know of a pair of directions, angles in radians as in brdfit_sample: for a table, so that firmware at known angles needs no trigonometry.
+ *
+ * Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON.
+ */
+brdfit_error brdfit_geometry_init_f32(float theta_i,
+                                      float theta_s,
+                                      float delta_phi,
+                                      brdfit_geometry_f32 *geometry);
+
+/**
+ * Adds a sample whose geometry is known; brdf and weight as in brdfit_sample.
+ *
+ * Errors: NULL, MISALIGNED, FULL, NOT_FINITE, BEYOND_HORIZON, NOT_POSITIVE, NOT_BEGUN.
+ */
+brdfit_error brdfit_scan_add_at_f32(brdfit_scan_f32 *scan,
+                                    const brdfit_geometry_f32 *geometry,
+                                    float brdf,
+                                    float weight);
+
+/**
+ * Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+ *
+ * Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+ */
+brdfit_error brdfit_search_begin_f32(brdfit_search_state_f32 *search,
+                                     const brdfit_options_f32 *options);
+
+/**
+ * Goes on with a search for at most `passes` passes over the scan, always the same one; sets `ended` to 1 if the search has ended, and else to 0. With all its steps it ends in the bits of brdfit_search_f32(). Nothing happens to a search that has ended.
+ *
+ * Errors: NULL, MISALIGNED, TOO_FEW, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_step_f32(brdfit_search_state_f32 *search,
+                                    const brdfit_scan_f32 *scan,
+                                    uint32_t passes,
+                                    uint32_t *ended);
+
+/**
+ * What a search has found so far, with minima as in brdfit_search_f32(); NO_FIT before its first fit.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
+ */
+brdfit_error brdfit_search_found_f32(const brdfit_search_state_f32 *search,
+                                     brdfit_minimum_f32 *minima,
+                                     size_t capacity,
+                                     brdfit_found_f32 *found);
+
+/**
+ * Ends a search where it is; what it has found stays.
+ *
+ * Errors: NULL, MISALIGNED, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_abort_f32(brdfit_search_state_f32 *search);
+
+/**
+ * Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_save_f32(brdfit_search_state_f32 *search,
+                                    uint8_t *bytes,
+                                    size_t capacity,
+                                    size_t *length);
+
+/**
+ * Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+ */
+brdfit_error brdfit_search_restore_f32(brdfit_search_state_f32 *search,
+                                       const brdfit_options_f32 *options,
+                                       const uint8_t *bytes,
+                                       size_t length);
+
+/**
+ * What a scan tells of parameters at their optimum `params`, with the options of the search or fit; null options are the usual ones. One pass.
+ *
+ * Errors: NULL, MISALIGNED, NOT_FINITE, PARAMS, BOUNDS, TERMS, OPTIONS, TOO_FEW, NOT_BEGUN.
+ */
+brdfit_error brdfit_uncertainty_at_f32(const brdfit_scan_f32 *scan,
+                                       const brdfit_options_f32 *options,
+                                       const brdfit_params_f32 *params,
+                                       brdfit_uncertainty_f32 *uncertainty);
+
+/**
  * Sets all options to their usual values.
  *
  * Errors: NULL, MISALIGNED.
@@ -846,6 +1055,91 @@ brdfit_error brdfit_search_f64(const brdfit_scan_f64 *scan,
                                size_t capacity,
                                brdfit_found_f64 *found);
 
+/**
+ * What the model needs to know of a pair of directions, angles in radians as in brdfit_sample: for a table, so that firmware at known angles needs no trigonometry.
+ *
+ * Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON.
+ */
+brdfit_error brdfit_geometry_init_f64(double theta_i,
+                                      double theta_s,
+                                      double delta_phi,
+                                      brdfit_geometry_f64 *geometry);
+
+/**
+ * Adds a sample whose geometry is known; brdf and weight as in brdfit_sample.
+ *
+ * Errors: NULL, MISALIGNED, FULL, NOT_FINITE, BEYOND_HORIZON, NOT_POSITIVE, NOT_BEGUN.
+ */
+brdfit_error brdfit_scan_add_at_f64(brdfit_scan_f64 *scan,
+                                    const brdfit_geometry_f64 *geometry,
+                                    double brdf,
+                                    double weight);
+
+/**
+ * Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+ *
+ * Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+ */
+brdfit_error brdfit_search_begin_f64(brdfit_search_state_f64 *search,
+                                     const brdfit_options_f64 *options);
+
+/**
+ * Goes on with a search for at most `passes` passes over the scan, always the same one; sets `ended` to 1 if the search has ended, and else to 0. With all its steps it ends in the bits of brdfit_search_f64(). Nothing happens to a search that has ended.
+ *
+ * Errors: NULL, MISALIGNED, TOO_FEW, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_step_f64(brdfit_search_state_f64 *search,
+                                    const brdfit_scan_f64 *scan,
+                                    uint32_t passes,
+                                    uint32_t *ended);
+
+/**
+ * What a search has found so far, with minima as in brdfit_search_f64(); NO_FIT before its first fit.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
+ */
+brdfit_error brdfit_search_found_f64(const brdfit_search_state_f64 *search,
+                                     brdfit_minimum_f64 *minima,
+                                     size_t capacity,
+                                     brdfit_found_f64 *found);
+
+/**
+ * Ends a search where it is; what it has found stays.
+ *
+ * Errors: NULL, MISALIGNED, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_abort_f64(brdfit_search_state_f64 *search);
+
+/**
+ * Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
+ */
+brdfit_error brdfit_search_save_f64(brdfit_search_state_f64 *search,
+                                    uint8_t *bytes,
+                                    size_t capacity,
+                                    size_t *length);
+
+/**
+ * Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+ *
+ * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+ */
+brdfit_error brdfit_search_restore_f64(brdfit_search_state_f64 *search,
+                                       const brdfit_options_f64 *options,
+                                       const uint8_t *bytes,
+                                       size_t length);
+
+/**
+ * What a scan tells of parameters at their optimum `params`, with the options of the search or fit; null options are the usual ones. One pass.
+ *
+ * Errors: NULL, MISALIGNED, NOT_FINITE, PARAMS, BOUNDS, TERMS, OPTIONS, TOO_FEW, NOT_BEGUN.
+ */
+brdfit_error brdfit_uncertainty_at_f64(const brdfit_scan_f64 *scan,
+                                       const brdfit_options_f64 *options,
+                                       const brdfit_params_f64 *params,
+                                       brdfit_uncertainty_f64 *uncertainty);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -865,6 +1159,10 @@ BRDFIT_ASSERT(sizeof(brdfit_block_f32) == BRDFIT_BLOCK_SIZE_F32);
 BRDFIT_ASSERT(sizeof(brdfit_block_f64) == BRDFIT_BLOCK_SIZE_F64);
 BRDFIT_ASSERT(sizeof(brdfit_fit_f32) == BRDFIT_FIT_SIZE_F32);
 BRDFIT_ASSERT(sizeof(brdfit_fit_f64) == BRDFIT_FIT_SIZE_F64);
+BRDFIT_ASSERT(sizeof(brdfit_search_state_f32) == BRDFIT_SEARCH_SIZE_F32);
+BRDFIT_ASSERT(sizeof(brdfit_search_state_f64) == BRDFIT_SEARCH_SIZE_F64);
+BRDFIT_ASSERT(sizeof(brdfit_geometry_f32) == 24 && sizeof(brdfit_geometry_f64) == 48);
+BRDFIT_ASSERT(sizeof(brdfit_uncertainty_f32) == 176 && sizeof(brdfit_uncertainty_f64) == 352);
 BRDFIT_ASSERT(sizeof(brdfit_sample_f32) == 20 && sizeof(brdfit_sample_f64) == 40);
 BRDFIT_ASSERT(sizeof(brdfit_params_f32) == 24 && sizeof(brdfit_params_f64) == 48);
 BRDFIT_ASSERT(sizeof(brdfit_options_f32) == 88 && sizeof(brdfit_options_f64) == 144);

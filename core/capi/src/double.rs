@@ -3,7 +3,7 @@
 //! Safety, of all: what the top of the header asks of pointers.
 
 use crate::types::*;
-use crate::{fit, options, scan};
+use crate::{fit, options, scan, search};
 
 fn code(done: Result<(), brdfit_error>) -> brdfit_error {
     match done {
@@ -146,4 +146,123 @@ pub unsafe extern "C" fn brdfit_search_f64(
 ) -> brdfit_error {
     // SAFETY: see the top.
     code(unsafe { fit::search(scan, options, minima, capacity, found) })
+}
+
+/// What the model needs to know of a pair of directions, angles in radians as in brdfit_sample: for a table, so that firmware at known angles needs no trigonometry.
+///
+/// Errors: NULL, MISALIGNED, NOT_FINITE, BEYOND_HORIZON.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_geometry_init_f64(
+    theta_i: f64,
+    theta_s: f64,
+    delta_phi: f64,
+    geometry: *mut brdfit_geometry<f64>,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { scan::geometry([theta_i, theta_s, delta_phi], geometry) })
+}
+
+/// Adds a sample whose geometry is known; brdf and weight as in brdfit_sample.
+///
+/// Errors: NULL, MISALIGNED, FULL, NOT_FINITE, BEYOND_HORIZON, NOT_POSITIVE, NOT_BEGUN.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_scan_add_at_f64(
+    scan: *mut brdfit_scan<f64>,
+    geometry: *const brdfit_geometry<f64>,
+    brdf: f64,
+    weight: f64,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { scan::scan_add_at(scan, geometry, brdf, weight) })
+}
+
+/// Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+///
+/// Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_begin_f64(
+    search: *mut brdfit_search_state<f64>,
+    options: *const brdfit_options<f64>,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::begin(search, options) })
+}
+
+/// Goes on with a search for at most `passes` passes over the scan, always the same one; sets `ended` to 1 if the search has ended, and else to 0. With all its steps it ends in the bits of brdfit_search_f64(). Nothing happens to a search that has ended.
+///
+/// Errors: NULL, MISALIGNED, TOO_FEW, NOT_BEGUN.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_step_f64(
+    search: *mut brdfit_search_state<f64>,
+    scan: *const brdfit_scan<f64>,
+    passes: u32,
+    ended: *mut u32,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::step(search, scan, passes, ended) })
+}
+
+/// What a search has found so far, with minima as in brdfit_search_f64(); NO_FIT before its first fit.
+///
+/// Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_found_f64(
+    search: *const brdfit_search_state<f64>,
+    minima: *mut brdfit_minimum<f64>,
+    capacity: usize,
+    found: *mut brdfit_found<f64>,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::found(search, minima, capacity, found) })
+}
+
+/// Ends a search where it is; what it has found stays.
+///
+/// Errors: NULL, MISALIGNED, NOT_BEGUN.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_abort_f64(search: *mut brdfit_search_state<f64>) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::abort(search) })
+}
+
+/// Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+///
+/// Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_save_f64(
+    search: *mut brdfit_search_state<f64>,
+    bytes: *mut u8,
+    capacity: usize,
+    length: *mut usize,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::save(search, bytes, capacity, length) })
+}
+
+/// Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+///
+/// Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_search_restore_f64(
+    search: *mut brdfit_search_state<f64>,
+    options: *const brdfit_options<f64>,
+    bytes: *const u8,
+    length: usize,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::restore(search, options, bytes, length) })
+}
+
+/// What a scan tells of parameters at their optimum `params`, with the options of the search or fit; null options are the usual ones. One pass.
+///
+/// Errors: NULL, MISALIGNED, NOT_FINITE, PARAMS, BOUNDS, TERMS, OPTIONS, TOO_FEW, NOT_BEGUN.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_uncertainty_at_f64(
+    scan: *const brdfit_scan<f64>,
+    options: *const brdfit_options<f64>,
+    params: *const brdfit_params<f64>,
+    uncertainty: *mut brdfit_uncertainty<f64>,
+) -> brdfit_error {
+    // SAFETY: see the top.
+    code(unsafe { search::uncertainty(scan, options, params, uncertainty) })
 }

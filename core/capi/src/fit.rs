@@ -5,11 +5,12 @@ use core::mem::MaybeUninit;
 use brdfit_core::brdf::{ALL, Params, parameters};
 use brdfit_core::geometry::Block;
 use brdfit_core::lm::Fit;
-use brdfit_core::lobes::{Beckmann, Distribution};
+use brdfit_core::lobes::Distribution;
 use brdfit_core::microfacet::Microfacet;
+use brdfit_core::minima::Minimum;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::{Residuals, Scan};
-use brdfit_core::search::{Region, Scene};
+use brdfit_core::search::{Evaluations, Region, Scene};
 
 use crate::Done;
 use crate::memory::{changed, input, output, outputs};
@@ -47,36 +48,37 @@ impl<R> State<R> {
 }
 
 /// The residuals of a model of Eq. 14 with distribution `D`; its parameters are those of [`Scan`].
-type Of<'a, R, D, const TERMS: u8, const P: usize> = Residuals<'a, R, Microfacet<TERMS, D>, P>;
+pub type Of<'a, R, D, const TERMS: u8, const P: usize> = Residuals<'a, R, Microfacet<TERMS, D>, P>;
 
 /// Calls a function of any model and set of terms with those chosen at run time.
 macro_rules! with_model {
     ($options:expr, $function:ident::<$R:ident>($($argument:expr),*)) => {
         match ($options.model, $options.terms) {
             #[cfg(feature = "ggx")]
-            (BRDFIT_MODEL_GGX, 0b1111) => $function::<$R, brdfit_core::lobes::Ggx, 0b1111, 6>($($argument),*),
-            (1.., _) => Err(brdfit_error::Terms),
-            (BRDFIT_MODEL_BECKMANN, 0b1111) => $function::<$R, Beckmann, 0b1111, 6>($($argument),*),
+            ($crate::BRDFIT_MODEL_GGX, 0b1111) => $function::<$R, brdfit_core::lobes::Ggx, 0b1111, 6>($($argument),*),
+            (1.., _) => Err($crate::brdfit_error::Terms),
+            ($crate::BRDFIT_MODEL_BECKMANN, 0b1111) => $function::<$R, brdfit_core::lobes::Beckmann, 0b1111, 6>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b0001) => $function::<$R, Beckmann, 0b0001, 1>($($argument),*),
+            (_, 0b0001) => $function::<$R, brdfit_core::lobes::Beckmann, 0b0001, 1>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b0010) => $function::<$R, Beckmann, 0b0010, 3>($($argument),*),
+            (_, 0b0010) => $function::<$R, brdfit_core::lobes::Beckmann, 0b0010, 3>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b1010) => $function::<$R, Beckmann, 0b1010, 4>($($argument),*),
+            (_, 0b1010) => $function::<$R, brdfit_core::lobes::Beckmann, 0b1010, 4>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b1110) => $function::<$R, Beckmann, 0b1110, 5>($($argument),*),
+            (_, 0b1110) => $function::<$R, brdfit_core::lobes::Beckmann, 0b1110, 5>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b0011) => $function::<$R, Beckmann, 0b0011, 4>($($argument),*),
+            (_, 0b0011) => $function::<$R, brdfit_core::lobes::Beckmann, 0b0011, 4>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b1011) => $function::<$R, Beckmann, 0b1011, 5>($($argument),*),
+            (_, 0b1011) => $function::<$R, brdfit_core::lobes::Beckmann, 0b1011, 5>($($argument),*),
             #[cfg(feature = "sets")]
-            (_, 0b0111) => $function::<$R, Beckmann, 0b0111, 5>($($argument),*),
-            _ => Err(brdfit_error::Terms),
+            (_, 0b0111) => $function::<$R, brdfit_core::lobes::Beckmann, 0b0111, 5>($($argument),*),
+            _ => Err($crate::brdfit_error::Terms),
         }
     };
 }
+pub(crate) use with_model;
 
-fn enough<const P: usize>(samples: usize) -> Done {
+pub fn enough<const P: usize>(samples: usize) -> Done {
     if samples < P { Err(brdfit_error::TooFew) } else { Ok(()) }
 }
 
@@ -214,7 +216,7 @@ fn fit_result_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     Ok(result::<R, TERMS, P>(unsafe { &*state.fit::<P>() }))
 }
 
-fn result<R: Real, const TERMS: u8, const P: usize>(fit: &Fit<R, P>) -> brdfit_result<R> {
+pub fn result<R: Real, const TERMS: u8, const P: usize>(fit: &Fit<R, P>) -> brdfit_result<R> {
     brdfit_result {
         params: Scan::<R, TERMS, P>::params(&fit.x).into(),
         cost: fit.at.cost,
@@ -232,12 +234,8 @@ pub unsafe fn search<R: Real>(
 ) -> Done {
     // SAFETY: the contract of the header.
     let ((blocks, samples), options, found) = unsafe { (blocks_of(scan)?, options_at(options)?, output(found)?) };
-    let minima = if minima.is_null() && capacity == 0 {
-        &mut []
-    } else {
-        // SAFETY: the contract of the header.
-        unsafe { outputs(minima, capacity) }?
-    };
+    // SAFETY: the contract of the header.
+    let minima = unsafe { minima_of(minima, capacity) }?;
     found.write(with_model!(options, search_of::<R>(blocks, samples, &options, minima))?);
     Ok(())
 }
@@ -261,17 +259,47 @@ fn search_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
     if !found.best.at.cost.is_finite() {
         return Err(brdfit_error::NoFit);
     }
-    for (place, minimum) in minima.iter_mut().zip(found.minima.as_slice()) {
+    Ok(write_found::<R, TERMS, P>(
+        &found.best,
+        found.minima.as_slice(),
+        found.evaluations,
+        minima,
+    ))
+}
+
+/// Room for minima; none if the caller has no interest in them.
+///
+/// # Safety
+/// As for `memory::outputs`.
+pub unsafe fn minima_of<'a, R>(
+    minima: *mut brdfit_minimum<R>,
+    capacity: usize,
+) -> Result<&'a mut [MaybeUninit<brdfit_minimum<R>>], brdfit_error> {
+    if minima.is_null() && capacity == 0 {
+        return Ok(&mut []);
+    }
+    // SAFETY: as asked of the caller.
+    unsafe { outputs(minima, capacity) }
+}
+
+/// What a search found, and as many of its minima as there is room for.
+pub fn write_found<R: Real, const TERMS: u8, const P: usize>(
+    best: &Fit<R, P>,
+    list: &[Minimum<R, P>],
+    evaluations: Evaluations,
+    minima: &mut [MaybeUninit<brdfit_minimum<R>>],
+) -> brdfit_found<R> {
+    for (place, minimum) in minima.iter_mut().zip(list) {
         place.write(brdfit_minimum {
             params: Scan::<R, TERMS, P>::params(&minimum.x).into(),
             cost: minimum.cost,
             hits: minimum.hits,
         });
     }
-    Ok(brdfit_found {
-        best: result::<R, TERMS, P>(&found.best),
-        minima: minima.len().min(found.minima.as_slice().len()),
-        cost_passes: found.evaluations.cost,
-        linearize_passes: found.evaluations.linearize,
-    })
+    brdfit_found {
+        best: result::<R, TERMS, P>(best),
+        minima: minima.len().min(list.len()),
+        cost_passes: evaluations.cost,
+        linearize_passes: evaluations.linearize,
+    }
 }

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | types, constants and error codes that C sees, with their sizes | `types.rs` |
 //! | pointers of C -> references, or an error | `memory.rs` |
-//! | what the functions do, for both number types | `options.rs`, `scan.rs`, `fit.rs` |
+//! | what the functions do, for both number types | `options.rs`, `scan.rs`, `fit.rs`, `search.rs` |
 //! | the functions themselves, by name | `names.rs`, `single.rs`, `double.rs` |
 //!
 //! `double.rs` is `single.rs` with `f64` in place of `f32`; a test holds it to that, and the header to the source.
@@ -25,6 +25,7 @@ mod memory;
 mod names;
 mod options;
 mod scan;
+mod search;
 mod single;
 mod types;
 

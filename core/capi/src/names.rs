@@ -34,8 +34,9 @@ pub extern "C" fn brdfit_error_text(error: i32) -> *const c_char {
         -10 => c"no such model, or none of just these terms",
         -11 => c"a tolerance, the damping or a count is out of range",
         -12 => c"fewer samples than parameters",
-        -13 => c"scan or fit was not begun",
+        -13 => c"scan, fit or search was not begun",
         -14 => c"no start gives a finite model",
+        -15 => c"not a saved search of this kind, or damaged",
         _ => c"unknown error",
     };
     text.as_ptr()

@@ -1,7 +1,7 @@
 //! Samples -> blocks of the caller; and the model itself.
 
 use brdfit_core::brdf::{ALL, Params};
-use brdfit_core::geometry::{Block, Geometry, LANES, Observation, Sample, SampleError};
+use brdfit_core::geometry::{Block, Geometry, LANES, LobeGeometry, Observation, Sample, SampleError};
 use brdfit_core::lobes::{Beckmann, Distribution};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
@@ -63,11 +63,72 @@ pub unsafe fn scan_add<R: Real>(scan: *mut brdfit_scan<R>, samples: *const brdfi
             weight: sample.weight,
         })
         .map_err(of_sample)?;
-        // SAFETY: the block is one of the scan's, which `scan_init` made.
-        let block = unsafe { changed(scan.blocks.cast::<Block<R>>().add(scan.samples / LANES)) }?;
-        block.set(scan.samples % LANES, &observation);
-        scan.samples += 1;
+        put(scan, &observation)?;
     }
+    Ok(())
+}
+
+/// Puts an observation into the next lane.
+fn put<R: Real>(scan: &mut brdfit_scan<R>, observation: &Observation<R>) -> Done {
+    // SAFETY: the block is one of the scan's, which `scan_init` made: the callers saw that there is room.
+    let block = unsafe { changed(scan.blocks.cast::<Block<R>>().add(scan.samples / LANES)) }?;
+    block.set(scan.samples % LANES, observation);
+    scan.samples += 1;
+    Ok(())
+}
+
+pub unsafe fn scan_add_at<R: Real>(
+    scan: *mut brdfit_scan<R>,
+    geometry: *const brdfit_geometry<R>,
+    brdf: R,
+    weight: R,
+) -> Done {
+    // SAFETY: the contract of the header.
+    let (scan, known) = unsafe { (changed(scan)?, input(geometry)?) };
+    if scan.blocks.is_null() {
+        return Err(brdfit_error::NotBegun);
+    }
+    if scan.samples / LANES >= scan.capacity {
+        return Err(brdfit_error::Full);
+    }
+    let (angles, factors) = (known.tan2_theta_h, known.factor);
+    if !known
+        .cos_theta_d
+        .iter()
+        .chain(&angles)
+        .chain(&factors)
+        .all(|x| x.is_finite())
+    {
+        return Err(brdfit_error::NotFinite);
+    }
+    let steep = known.cos_theta_d.iter().any(|&cos| !(cos > R::ZERO && cos <= R::ONE));
+    if steep || angles.iter().chain(&factors).any(|&x| x < R::ZERO) {
+        return Err(brdfit_error::BeyondHorizon);
+    }
+    if weight <= R::ZERO {
+        return Err(brdfit_error::NotPositive);
+    }
+    let lobes = core::array::from_fn(|lobe| LobeGeometry {
+        tan2_theta_h: angles[lobe],
+        cos_theta_d: known.cos_theta_d[lobe],
+        factor: factors[lobe],
+    });
+    put(
+        scan,
+        &Observation::at(Geometry { lobes }, brdf, weight).map_err(of_sample)?,
+    )
+}
+
+pub unsafe fn geometry<R: Real>(direction: [R; 3], geometry: *mut brdfit_geometry<R>) -> Done {
+    // SAFETY: the contract of the header.
+    let geometry = unsafe { output(geometry) }?;
+    let [theta_i, theta_s, delta_phi] = direction;
+    let lobes = Geometry::new(theta_i, theta_s, delta_phi).map_err(of_sample)?.lobes;
+    geometry.write(brdfit_geometry {
+        tan2_theta_h: lobes.map(|lobe| lobe.tan2_theta_h),
+        cos_theta_d: lobes.map(|lobe| lobe.cos_theta_d),
+        factor: lobes.map(|lobe| lobe.factor),
+    });
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use brdfit_core::geometry::{Block, LANES};
 use brdfit_core::lm::Stop;
 
 use crate::fit::State;
+use crate::search;
 
 /// Lambertian term rho_d / pi.
 pub const BRDFIT_DIFFUSE: u32 = 1;
@@ -38,6 +39,14 @@ pub const BRDFIT_FIT_NUMBERS: usize = 96;
 pub const BRDFIT_FIT_SIZE_F32: usize = 384;
 /// Size of a fit in double, bytes.
 pub const BRDFIT_FIT_SIZE_F64: usize = 768;
+/// Size of a search in steps, in numbers of its type.
+pub const BRDFIT_SEARCH_NUMBERS: usize = 960;
+/// Size of a search in steps in float, bytes.
+pub const BRDFIT_SEARCH_SIZE_F32: usize = 3840;
+/// Size of a search in steps in double, bytes.
+pub const BRDFIT_SEARCH_SIZE_F64: usize = 7680;
+/// Bytes that brdfit_search_save_f32() or _f64() writes at most.
+pub const BRDFIT_SAVED_SIZE: usize = 7680;
 
 const _: () = assert!(BRDFIT_DIFFUSE == DIFFUSE as u32 && BRDFIT_SURFACE == SURFACE as u32);
 const _: () = assert!(BRDFIT_VOLUME == VOLUME as u32 && BRDFIT_ABSORBING == ABSORBING as u32);
@@ -61,6 +70,13 @@ const _: () = assert!(align_of::<Block<f64>>() <= BRDFIT_BLOCK_ALIGNMENT);
 const _: () = assert!(size_of::<State<f32>>() <= BRDFIT_FIT_SIZE_F32);
 const _: () = assert!(size_of::<State<f64>>() <= BRDFIT_FIT_SIZE_F64);
 const _: () = assert!(align_of::<State<f64>>() <= align_of::<brdfit_fit<f64>>());
+const _: () = assert!(size_of::<brdfit_search_state<f32>>() == BRDFIT_SEARCH_SIZE_F32);
+const _: () = assert!(size_of::<brdfit_search_state<f64>>() == BRDFIT_SEARCH_SIZE_F64);
+const _: () = assert!(size_of::<search::State<f32>>() <= BRDFIT_SEARCH_SIZE_F32);
+const _: () = assert!(size_of::<search::State<f64>>() <= BRDFIT_SEARCH_SIZE_F64);
+const _: () = assert!(align_of::<search::State<f64>>() <= align_of::<brdfit_search_state<f64>>());
+const _: () = assert!(size_of::<brdfit_geometry<f32>>() == 24 && size_of::<brdfit_geometry<f64>>() == 48);
+const _: () = assert!(size_of::<brdfit_uncertainty<f32>>() == 176 && size_of::<brdfit_uncertainty<f64>>() == 352);
 
 /// What every function returns; brdfit_error_text() says it in words.
 #[repr(i32)]
@@ -92,10 +108,12 @@ pub enum brdfit_error {
     Options = -11,
     /// There are fewer samples than parameters.
     TooFew = -12,
-    /// The scan or the fit was never begun, or has been overwritten.
+    /// The scan, the fit or the search was never begun, or has been overwritten.
     NotBegun = -13,
-    /// No start gives a finite model.
+    /// No start gives a finite model, or no fit has begun yet.
     NoFit = -14,
+    /// Bytes are not a saved search of this version, these terms and this type of number, or were damaged.
+    Saved = -15,
 }
 
 /// How a fit ended; brdfit_stop_text() says it in words.
@@ -278,4 +296,38 @@ pub struct brdfit_found<R> {
     pub cost_passes: u32,
     /// Evaluations with derivatives.
     pub linearize_passes: u32,
+}
+
+/// A search under way; it holds no pointers, and may be copied.
+#[repr(C, align(8))]
+#[derive(Clone, Copy, Debug)]
+pub struct brdfit_search_state<R> {
+    /// Not to be touched.
+    pub opaque: [R; BRDFIT_SEARCH_NUMBERS],
+}
+
+/// What the model needs to know of a pair of directions, first for the surface lobe, then for the volume lobe; dimensionless.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_geometry<R> {
+    /// tan^2 theta_h and tan^2 theta_he (Eq. 13), 0 or more.
+    pub tan2_theta_h: [R; 2],
+    /// cos theta_d and cos theta_de (Eq. 12), above 0, at most 1.
+    pub cos_theta_d: [R; 2],
+    /// What else of f does not depend on the parameters, 0 or more.
+    pub factor: [R; 2],
+}
+
+/// What a fit knows of its parameters, for residuals of equal and independent errors.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct brdfit_uncertainty<R> {
+    /// Standard errors; 0 of parameters that are absent, held or on a bound (of kappa at 0 too), very large where nothing is known.
+    pub standard_errors: brdfit_params<R>,
+    /// Correlations, -1 to 1, row by row in the order of brdfit_params; 0 where one is absent or held.
+    pub correlations: [R; 36],
+    /// Standard deviation of a residual; infinite without degrees of freedom.
+    pub scale: R,
+    /// Ratio of the largest to the least eigenvalue of the scaled J'J, 1 or more.
+    pub condition: R,
 }

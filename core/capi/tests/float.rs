@@ -11,11 +11,12 @@ use brdfit_capi::brdfit_error as Error;
 use brdfit_capi::*;
 use brdfit_core::brdf::{ALL, Brdf, Params};
 use brdfit_core::geometry::{Geometry, Sample};
-use brdfit_core::lm::{self, Options};
+use brdfit_core::lm::{self, Options, Problem};
 use brdfit_core::lobes::{Beckmann, Distribution, Ggx};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::{Residuals, Scan, value};
+use brdfit_core::uncertainty::Uncertainty;
 
 /// Test data 1 with noise, each sample with a weight.
 fn samples() -> Vec<Sample<f64>> {
@@ -366,4 +367,184 @@ fn mistakes_with_options_are_errors() {
     assert_eq!(wrong(&|options| options.cost_tolerance = f32::NAN), Error::Options);
     assert_eq!(wrong(&|options| options.step_tolerance = -1.0), Error::Options);
     assert_eq!(wrong(&|options| options.damping = 0.0), Error::Options);
+}
+
+#[test]
+fn a_search_in_steps_gives_the_bits_of_one_at_once() {
+    let memory = with_samples();
+    for (model, terms) in [
+        (BRDFIT_MODEL_BECKMANN, BRDFIT_ALL),
+        (BRDFIT_MODEL_BECKMANN, BRDFIT_DIFFUSE | BRDFIT_SURFACE),
+        (BRDFIT_MODEL_GGX, BRDFIT_ALL),
+    ] {
+        let options = brdfit_options {
+            model,
+            terms,
+            ..usual()
+        };
+        // SAFETY: as above.
+        unsafe {
+            let (mut whole, mut found): (brdfit_found<f32>, brdfit_found<f32>) = (zeroed(), zeroed());
+            let (mut minima, mut others): ([brdfit_minimum<f32>; 32], [brdfit_minimum<f32>; 32]) = (zeroed(), zeroed());
+            let done = brdfit_search_f32(&memory.scan, &options, minima.as_mut_ptr(), 32, &mut whole);
+            assert_eq!(done, Error::None);
+            let mut state: brdfit_search_state<f32> = zeroed();
+            let mut flash = [0; BRDFIT_SAVED_SIZE];
+            let (mut ended, mut length, mut steps) = (7, 0, 0);
+            assert_eq!(brdfit_search_begin_f32(&mut state, &options), Error::None);
+            while ended != 1 {
+                let done = brdfit_search_step_f32(&mut state, &memory.scan, 1 + steps % 3, &mut ended);
+                assert_eq!(done, Error::None);
+                steps += 1;
+                if steps % 16 == 0 {
+                    let room = flash.len();
+                    let done = brdfit_search_save_f32(&mut state, flash.as_mut_ptr(), room, &mut length);
+                    assert_eq!(done, Error::None);
+                    state = zeroed();
+                    let done = brdfit_search_restore_f32(&mut state, &options, flash.as_ptr(), length);
+                    assert_eq!(done, Error::None);
+                }
+            }
+            let done = brdfit_search_found_f32(&state, others.as_mut_ptr(), 32, &mut found);
+            assert_eq!((done, found), (Error::None, whole));
+            assert_eq!(minima, others);
+        }
+    }
+}
+
+#[test]
+fn an_aborted_search_keeps_what_it_found() {
+    let memory = with_samples();
+    // SAFETY: as above.
+    unsafe {
+        let (mut state, mut before, mut after): (_, brdfit_found<f32>, brdfit_found<f32>) =
+            (zeroed(), zeroed(), zeroed());
+        let mut ended = 0;
+        assert_eq!(brdfit_search_abort_f32(&mut state), Error::NotBegun);
+        assert_eq!(brdfit_search_begin_f32(&mut state, null()), Error::None);
+        let nothing = brdfit_search_found_f32(&state, null_mut(), 0, &mut before);
+        assert_eq!(nothing, Error::NoFit);
+        let done = brdfit_search_step_f32(&mut state, &memory.scan, 60, &mut ended);
+        assert_eq!((done, ended), (Error::None, 0));
+        assert_eq!(brdfit_search_found_f32(&state, null_mut(), 0, &mut before), Error::None);
+        assert_eq!(brdfit_search_abort_f32(&mut state), Error::None);
+        let done = brdfit_search_step_f32(&mut state, &memory.scan, 60, &mut ended);
+        assert_eq!((done, ended), (Error::None, 1));
+        assert_eq!(brdfit_search_found_f32(&state, null_mut(), 0, &mut after), Error::None);
+        assert_eq!(before, after);
+    }
+}
+
+#[test]
+fn a_search_that_was_not_saved_so_is_refused() {
+    // SAFETY: as above.
+    unsafe {
+        let mut state: brdfit_search_state<f32> = zeroed();
+        let (mut flash, mut length, mut ended) = ([0; BRDFIT_SAVED_SIZE], 0, 0);
+        let bytes = flash.as_mut_ptr();
+        assert_eq!(
+            brdfit_search_save_f32(&mut state, bytes, 1, &mut length),
+            Error::NotBegun
+        );
+        assert_eq!(brdfit_search_begin_f32(&mut state, null()), Error::None);
+        assert_eq!(
+            brdfit_search_save_f32(&mut state, bytes, 99, &mut length),
+            Error::Length
+        );
+        let done = brdfit_search_save_f32(&mut state, bytes, BRDFIT_SAVED_SIZE, &mut length);
+        assert_eq!(done, Error::None);
+        let less = brdfit_options {
+            terms: BRDFIT_DIFFUSE,
+            ..usual()
+        };
+        let restored = brdfit_search_restore_f32(&mut state, &less, bytes, length);
+        assert_eq!(restored, Error::Saved);
+        let memory = with_samples();
+        let step = brdfit_search_step_f32(&mut state, &memory.scan, 1, &mut ended);
+        assert_eq!(step, Error::NotBegun);
+        *bytes.add(length - 1) ^= 1;
+        let restored = brdfit_search_restore_f32(&mut state, null(), bytes, length);
+        assert_eq!(restored, Error::Saved);
+        let restored = brdfit_search_restore_f32(&mut state, null(), bytes, 5);
+        assert_eq!(restored, Error::Length);
+    }
+}
+
+#[test]
+fn a_table_of_geometry_gives_the_bits_of_angles() {
+    let memory = with_samples();
+    let mut blocks = memory.blocks.clone();
+    // SAFETY: as above.
+    unsafe {
+        let (mut scan, mut geometry): (_, brdfit_geometry<f32>) = (zeroed(), zeroed());
+        let (mut found, mut known): (brdfit_found<f32>, brdfit_found<f32>) = (zeroed(), zeroed());
+        assert_eq!(brdfit_scan_add_at_f32(&mut scan, &geometry, 1.0, 1.0), Error::NotBegun);
+        assert_eq!(
+            brdfit_scan_init_f32(&mut scan, blocks.as_mut_ptr(), blocks.len()),
+            Error::None
+        );
+        assert_eq!(
+            brdfit_scan_add_at_f32(&mut scan, &geometry, 1.0, 1.0),
+            Error::BeyondHorizon
+        );
+        for sample in samples() {
+            let (theta_i, theta_s) = (sample.theta_i as f32, sample.theta_s as f32);
+            let done = brdfit_geometry_init_f32(theta_i, theta_s, BRDFIT_PI as f32, &mut geometry);
+            assert_eq!(done, Error::None);
+            assert_eq!(
+                brdfit_scan_add_at_f32(&mut scan, &geometry, 0.0, 1.0),
+                Error::NotPositive
+            );
+            let (brdf, weight) = (sample.brdf as f32, sample.weight as f32);
+            assert_eq!(brdfit_scan_add_at_f32(&mut scan, &geometry, brdf, weight), Error::None);
+        }
+        for (scan, found) in [(&memory.scan, &mut found), (&scan, &mut known)] {
+            assert_eq!(brdfit_search_f32(scan, null(), null_mut(), 0, found), Error::None);
+        }
+        assert_eq!(found, known);
+    }
+}
+
+#[test]
+fn standard_errors_are_those_of_the_core() {
+    let memory = with_samples();
+    let blocks = engine::blocks::<f32>(&samples()).unwrap();
+    let scan = Scan::<f32, ALL, 6>::new(&blocks);
+    let options = usual();
+    let bounds = Scan::<f32, ALL, 6>::bounds(&options.lower.into(), &options.upper.into());
+    // SAFETY: as above.
+    let (params, known) = unsafe {
+        let (mut found, mut known): (brdfit_found<f32>, brdfit_uncertainty<f32>) = (zeroed(), zeroed());
+        assert_eq!(
+            brdfit_search_f32(&memory.scan, null(), null_mut(), 0, &mut found),
+            Error::None
+        );
+        let params = found.best.params;
+        let done = brdfit_uncertainty_at_f32(&memory.scan, null(), &params, &mut known);
+        assert_eq!(done, Error::None);
+        assert_eq!(
+            brdfit_uncertainty_at_f32(&memory.scan, null(), null(), &mut known),
+            Error::Null
+        );
+        (params, known)
+    };
+    let x = Scan::<f32, ALL, 6>::coordinates(&params.into());
+    let expected = Uncertainty::new(&scan.linearize(&x), &x, &bounds, samples().len());
+    let axes = expected.held.transformed(&Scan::<f32, ALL, 6>::slopes(&x));
+    let errors = Params::from(known.standard_errors).to_array();
+    for i in 0..6 {
+        assert_eq!(errors[i], axes.standard_error(i));
+        // n is on its bound.
+        assert!(
+            (i == 4) == (errors[i] == 0.0) && (0.0..1.0).contains(&errors[i]),
+            "{errors:?}"
+        );
+        for j in 0..6 {
+            assert_eq!(known.correlations[6 * i + j], axes.correlation(i, j));
+        }
+    }
+    assert_eq!(
+        (known.scale, known.condition),
+        (expected.scale, expected.held.condition)
+    );
 }

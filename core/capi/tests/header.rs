@@ -29,7 +29,7 @@ fn every_error_and_stop_has_its_text() {
         // SAFETY: the library gives texts that end with 0 and live for ever.
         unsafe { CStr::from_ptr(pointer) }.to_str().unwrap()
     };
-    let errors: Vec<_> = (brdfit_error::NoFit as i32..=0)
+    let errors: Vec<_> = (brdfit_error::Saved as i32..=0)
         .map(|code| text(brdfit_error_text(code)))
         .collect();
     let stops: Vec<_> = (0..=brdfit_stop::NotFinite as i32)

@@ -57,11 +57,7 @@ impl<'a, const P: usize> Layout<'a, P> {
 
     /// Derivatives of the parameters by the coordinates at `x`; 0 at kappa = 0, where there is none.
     pub fn slopes(&self, x: &[f64; P]) -> [f64; P] {
-        std::array::from_fn(|k| match self.own[k].is_squared() {
-            false => 1.0,
-            true if x[k] > 0.0 => 0.5 / Real::sqrt(x[k]),
-            true => 0.0,
-        })
+        std::array::from_fn(|k| self.own[k].slope(x[k]))
     }
 
     /// The coordinate that is the square of a parameter.

@@ -1,6 +1,6 @@
 //! What is known of instrument and sample beside the samples, and takes part in the fit.
 //!
-//! Every part of it stands around the same search: priors and the limit on energy are further residuals ([`beside`]), the aperture is a scan of averages ([`averaged`]), and the offset is a search over shifted samples ([`offset`]).
+//! Every part of it stands around the same search: priors and the limit on energy are further residuals (`beside`), the aperture is a scan of averages (`averaged`), and the offset is a search over shifted samples (`offset`).
 //! A fit without any of it is not touched.
 
 pub(crate) mod aperture;

@@ -5,7 +5,7 @@ const LARGEST = 400e6;
 
 const FORMS = ["zemax", "zemax-abg", "fred", "glsl", "mitsuba", "mitsuba-native", "mitsuba-principled", "gltf", "materialx", "rgl", "c", "rust", "bird", "openmaterial"];
 /** @type {Record<string, string>} */
-const ENDINGS = { zemax: "bsdf", "zemax-abg": "dat", fred: "frs", glsl: "brdf", mitsuba: "py", "mitsuba-native": "xml", "mitsuba-principled": "xml", gltf: "gltf", materialx: "mtlx", rgl: "bsdf", c: "h", rust: "rs", bird: "json", openmaterial: "xompt" };
+const ENDINGS = { zemax: "bsdf", "zemax-abg": "dat", fred: "frs", glsl: "brdf", mitsuba: "py", "mitsuba-native": "py", "mitsuba-principled": "py", gltf: "gltf", materialx: "mtlx", rgl: "bsdf", c: "h", rust: "rs", bird: "json", openmaterial: "xompt" };
 
 /** @type {Bridge} */ let bridge;
 /** @type {any} */ let about;

@@ -2,9 +2,10 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use brdfit::analysis::choose;
 use brdfit::analysis::fit::known;
+use brdfit::analysis::{choose, deviations};
 use brdfit::engine::{FitError, Model, Until, Values, robust};
+use brdfit::input::Measurement;
 use brdfit::result::cell::Cell;
 use brdfit::result::columns::every;
 use brdfit::terms::term_names;
@@ -167,10 +168,21 @@ impl Work<'_> {
     }
 
     fn one(&self, scan: usize, until: Until, table: &Table) -> Result<Kept, String> {
-        let samples = self.scans.seen(scan, self.drop_invalid)?.samples;
-        let found = choose::fit(&samples, &self.asked(scan).until(until)).map(|(options, outcome, choice)| {
-            let kept = robust::kept(&samples, &outcome);
-            (options, known(&kept, &options, outcome), choice)
+        let seen = self.scans.seen(scan, self.drop_invalid)?;
+        let wanted = self.asked(scan).until(until);
+        let measurement = Measurement {
+            deviations: seen.deviations,
+            ..Measurement::of_samples("scan", seen.samples, seen.sigma_ln)
+        };
+        let measurement = deviations::settled(measurement, &wanted);
+        let samples = &measurement.samples;
+        let found = choose::fit(samples, &wanted).map(|(options, outcome, choice)| {
+            let kept = robust::kept(samples, &outcome);
+            let mut outcome = known(&kept, &options, outcome);
+            if let Some(sigma) = measurement.sigma_ln {
+                outcome.uncertainty = deviations::judged(&outcome.uncertainty, sigma).0;
+            }
+            (options, outcome, choice)
         });
         let kept = match found {
             Ok((options, outcome, _)) => Kept {

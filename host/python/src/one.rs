@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use brdfit::analysis::deviations::settled;
 use brdfit::analysis::fit::{FittedScan, fit as fit_scan};
 use brdfit::analysis::proof::{Goal, provable, prove};
 use brdfit::engine::{Material, Outcome, Until};
@@ -130,7 +131,12 @@ fn goal<'a>((eps, boxes, seconds): Claim, interrupted: &'a (dyn Fn() -> bool + S
 fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -> PyResult<FittedScan> {
     let asked = provable_if(options::search(words)?, claim)?;
     let one = |until: Until| -> Result<FittedScan, String> {
-        let fitted = asked.for_one(|| fit_scan(&scan.0, &asked.until(until)))?;
+        let wanted = asked.until(until);
+        let (scan, fitted) = asked.for_one(|| {
+            let scan = settled(scan.0.clone(), &wanted);
+            let fitted = fit_scan(&scan, &wanted);
+            (scan, fitted)
+        })?;
         let fitted = fitted.map_err(|error| line(&error))?;
         let Some(claim) = claim else {
             return Ok(fitted);
@@ -138,7 +144,7 @@ fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -
         let over = || until.is_over();
         let goal = goal(claim, &over);
         asked
-            .on_threads(|| prove(&scan.0, fitted, &goal))?
+            .on_threads(|| prove(&scan, fitted, &goal))?
             .map_err(|error| line(&error))
     };
     let mut fitted = scoped(py, one, |_| Ok(()))?.map_err(PyValueError::new_err)?;

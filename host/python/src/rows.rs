@@ -2,7 +2,7 @@
 
 use brdfit::input::azimuth;
 use brdfit::input::left_out::{Counts, Reason};
-use brdfit::input::weight::{self, Source};
+use brdfit::input::weight::{self, Deviation, Source};
 use brdfit::number::shortest;
 use brdfit_core::geometry::{Observation, Sample};
 use numpy::ndarray::{ArrayView, ArrayView2, Dimension};
@@ -76,6 +76,8 @@ pub struct Seen {
     pub samples: Vec<Sample<f64>>,
     /// The standard deviation of ln f that a weight of 1 stands for.
     pub sigma_ln: Option<f64>,
+    /// The standard deviations, one a sample; none if none were given.
+    pub deviations: Vec<Deviation>,
     /// What is not seen.
     pub left_out: Counts,
 }
@@ -93,6 +95,7 @@ impl Scans<'_> {
     pub fn seen(&self, scan: usize, drop_invalid: bool) -> Result<Seen, String> {
         let mut samples = Vec::with_capacity(self.brdf.ncols());
         let (mut weights, mut left_out) = (weight::Count::default(), Counts::default());
+        let mut deviations = Vec::new();
         for index in 0..self.brdf.ncols() {
             let at = [scan, index];
             let theta_i = self.theta_i[at];
@@ -110,6 +113,11 @@ impl Scans<'_> {
             if Observation::new(&sample).is_ok() && sample.weight > 0.0 {
                 weights.add(Source::Sigma);
                 samples.push(sample);
+                // In the order of the reader's operations, for its bits.
+                deviations.extend(self.sigma.as_ref().map(|sigma| Deviation {
+                    absolute: sigma[at] / self.brdf[at] * self.brdf[at],
+                    relative: 0.0,
+                }));
             } else if drop_invalid {
                 left_out.add(Reason::NotValid, theta_i);
             } else {
@@ -123,6 +131,7 @@ impl Scans<'_> {
         Ok(Seen {
             samples,
             sigma_ln,
+            deviations,
             left_out,
         })
     }

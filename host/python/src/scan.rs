@@ -24,6 +24,7 @@ pub fn scan(arrays: Arrays<'_>, drop_invalid: bool, name: &str) -> PyResult<Scan
     let seen = scans.seen(0, drop_invalid).map_err(PyValueError::new_err)?;
     Ok(Scan(Measurement {
         left_out: seen.left_out.list(),
+        deviations: seen.deviations,
         ..Measurement::of_samples(name, seen.samples, seen.sigma_ln)
     }))
 }

@@ -40,7 +40,7 @@ except KeyboardInterrupt:
     # Computing still goes on if this process uses time.
     used = time.process_time()
     print(time.monotonic() - begun, flush=True)
-    time.sleep(0.3)
+    time.sleep(1.5)
     print(time.process_time() - used, flush=True)
 """
 
@@ -59,4 +59,5 @@ def test_an_interrupt_ends_it(what):
     # 0.2 s where the machine is idle; what it waits for a processor is the machine's.
     print(f"{what}: {waited:.3f} s")
     assert waited < 5, f"{what}: {waited} s"
-    assert used < 0.2, f"{what}: {used} s of computing afterwards"
+    # The joint fit ends between passes of each thread, and a busy machine lets these wait.
+    assert used < 1, f"{what}: {used} s of computing afterwards"

@@ -75,8 +75,8 @@ def test_the_bits_of_the_program_with_sigma(tmp_path):
     assert result.x.tolist() != brdfit.fit(theta_i, theta_s, brdf).x.tolist()
     many = brdfit.fit_many(theta_i, theta_s, [brdf, brdf], sigma=[sigma, sigma])
     assert many.x.tolist() == [result.x.tolist()] * 2
-    # Only the ratios count, and a power of two changes no rounding.
-    assert brdfit.fit(theta_i, theta_s, brdf, sigma=sigma * 4).x.tolist() == result.x.tolist()
+    # Larger noise takes more from ln f on average, which is given back.
+    assert brdfit.fit(theta_i, theta_s, brdf, sigma=sigma * 2).x[0] > result.x[0]
 
 
 def test_prints_and_pickles():

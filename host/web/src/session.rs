@@ -1,6 +1,7 @@
 //! The files at hand, and what was made of them last.
 
 use brdfit::analysis::choose::Wanted;
+use brdfit::analysis::deviations::settled;
 use brdfit::analysis::fit::{FittedScan, fit};
 use brdfit::error::Error;
 use brdfit::input::{self, Measurement};
@@ -20,7 +21,8 @@ struct Last {
     asked: String,
     subject: Subject,
     scans: Vec<Measurement>,
-    fitted: Option<FittedScan>,
+    /// The scan as it was fitted, and its fit.
+    fitted: Option<(Measurement, FittedScan)>,
 }
 
 /// A scan with its fit.
@@ -65,11 +67,14 @@ impl Session {
     /// As [`Session::one`], and if the scan cannot be fitted.
     pub fn fit(&mut self, asked: &str) -> Result<Fitted<'_>, Error> {
         let last = self.look(asked)?;
-        let scan = only(&last.scans)?;
         let wanted = last.subject.search.wanted()?;
-        let fit: &FittedScan = match &mut last.fitted {
-            Some(fit) => fit,
-            none => none.insert(fit(scan, &wanted)?),
+        let (scan, fit) = match &mut last.fitted {
+            Some(fitted) => fitted,
+            none => {
+                let scan = settled(only(&last.scans)?.clone(), &wanted);
+                let fit = fit(&scan, &wanted)?;
+                none.insert((scan, fit))
+            }
         };
         Ok(Fitted { scan, wanted, fit })
     }

@@ -97,3 +97,12 @@ def line(text, folder):
     words = shlex.split(text)
     assert words[0] == "brdfit"
     return program(*words[1:], folder=folder)
+
+
+def wait_until(page, condition):
+    """Asks again and again; what waits in the page itself would need eval, which the page forbids."""
+    for _ in range(1200):
+        if page.evaluate(condition):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(f"not within a minute: {condition}")

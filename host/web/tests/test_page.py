@@ -5,7 +5,7 @@ import os
 import subprocess
 
 from axe_playwright_python.sync_playwright import Axe
-from conftest import EXAMPLE, MADE, PAGE, PATIENCE, ROOT
+from conftest import EXAMPLE, MADE, PAGE, PATIENCE, ROOT, wait_until
 
 MARKUP = '<img src=x onerror="alert(1)"><script>alert(2)</script>'
 
@@ -140,7 +140,7 @@ def test_layout(chromium):
         page.wait_for_selector("html[data-ready=yes]")
         page.click("#example")
         page.evaluate("settled")
-        page.wait_for_function("chart.fits.length === 1")
+        wait_until(page, "chart.fits.length === 1")
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         page.screenshot(path=MADE / f"page-{width}.png")
         page.screenshot(path=MADE / f"page-{width}-whole.png", full_page=True)

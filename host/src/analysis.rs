@@ -1,6 +1,7 @@
 //! What is computed beyond a search. Nothing here prints, reads options, or draws.
 
 pub mod bootstrap;
+pub mod chance;
 pub mod choose;
 pub mod converge;
 pub mod criteria;

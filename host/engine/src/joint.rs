@@ -230,7 +230,7 @@ impl<const P: usize> Scene<'_, P> {
         self.with(setup, |scans, rows| {
             let separate: Vec<Found<f64, P>> = scans
                 .par_iter()
-                .map(|scan| search(single(*scan), &one, self.options.seed, self.options.starts(), &lm))
+                .map(|scan| search(single(*scan), &one, self.options.seed, starts(self.options), &lm))
                 .collect();
             let problem = Joint::new(scans, self.is_shared());
             let together = Together {
@@ -281,6 +281,11 @@ impl<const P: usize> Scene<'_, P> {
             setup::is_above(self.options, values, samples)
         })
     }
+}
+
+/// Starts of each search; one where the fit is not wanted any more, as a hundred searches that end after their candidates take seconds.
+fn starts(options: &FitOptions) -> u32 {
+    if options.until.is_over() { 1 } else { options.starts() }
 }
 
 /// Samples that count.
@@ -336,7 +341,7 @@ impl<'a, const P: usize> Together<'a, P> {
         }
         let each = self.scans.par_iter().zip(self.separate).map(|(scan, found)| {
             let known: Vec<[f64; P]> = found.minima.as_slice().iter().map(|minimum| minimum.x).collect();
-            let (seed, starts) = (self.options.seed, self.options.starts());
+            let (seed, starts) = (self.options.seed, starts(self.options));
             search_from(single(*scan), &bounds, seed, starts, &known, &lm).best.x
         });
         let each: Vec<[f64; P]> = each.collect();

@@ -2,8 +2,8 @@
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
+use super::chance::above_f;
 use crate::engine::Precision;
 
 /// How well a fit does, and what it takes.
@@ -57,7 +57,7 @@ impl Criteria {
         let left = self.samples - self.parameters as f64;
         let fall = smaller.cost.max(self.cost) - self.cost;
         let f = fall / more / (self.cost / left);
-        FisherSnedecor::new(more, left).ok().map(|chance| chance.sf(f))
+        above_f(f, more, left)
     }
 }
 

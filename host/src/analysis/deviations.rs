@@ -2,8 +2,8 @@
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+use super::chance::below_chi2;
 use super::choose::{self, Wanted};
 use crate::engine::Values;
 use crate::engine::uncertainty::Uncertainty;
@@ -94,7 +94,7 @@ pub fn judged(known: &Uncertainty, sigma: f64) -> (Uncertainty, Option<Verdict>)
         return (known.clone(), None);
     }
     let ratio = known.scale / sigma;
-    let below = ChiSquared::new(degrees).map_or(0.5, |chi2| chi2.cdf(ratio * ratio * degrees));
+    let below = below_chi2(ratio * ratio * degrees, degrees);
     if 2.0 * below.min(1.0 - below) < REFUTED {
         return (known.clone(), Some(Verdict::Refuted(ratio)));
     }

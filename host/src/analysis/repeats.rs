@@ -3,10 +3,9 @@
 //! A single run does not know what changes between runs: the spot, the alignment, the lamp.
 //! The spread of the runs' values holds that and the noise within them, and is evaluated as type A; a calibration that is the same for all runs is type B.
 
-use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, StudentsT};
 
+use super::chance::{above_f, within_t};
 use super::derived::{Derived, Value};
 use super::fit::FittedScan;
 use super::undetermined::undetermined;
@@ -159,17 +158,20 @@ pub fn budget(values: &[Value], degrees_within: usize, scaled: f64) -> Option<Bu
     let between = (squares.sum::<f64>() / (count - 1.0)).sqrt();
     let within = (values.iter().map(|value| value.stderr * value.stderr).sum::<f64>() / count).sqrt();
     let ratio = (between / within) * (between / within);
-    let chance = FisherSnedecor::new(count - 1.0, degrees_within.max(1) as f64);
     let (type_a, type_b) = (between / count.sqrt(), scaled * mean.abs());
     let combined = (type_a * type_a + type_b * type_b).sqrt();
     let part = combined / type_a;
     let degrees_of_freedom = (count - 1.0) * part * part * part * part;
-    let coverage = student(0.5 + 0.5 * LEVEL, degrees_of_freedom);
+    let coverage = student(LEVEL, degrees_of_freedom);
     Some(Budget {
         mean,
         between,
         within,
-        by_chance: chance.map_or(1.0, |chance| if ratio.is_finite() { chance.sf(ratio) } else { 0.0 }),
+        by_chance: if ratio.is_finite() {
+            above_f(ratio, count - 1.0, degrees_within.max(1) as f64).unwrap_or(1.0)
+        } else {
+            0.0
+        },
         type_a,
         type_b,
         combined,
@@ -188,17 +190,14 @@ fn grubbs(values: &[Value], mean: f64, deviation: f64) -> Option<usize> {
     }
     let away = |place: &usize| (values[*place].value - mean).abs();
     let farthest = (0..values.len()).max_by(|a, b| away(a).total_cmp(&away(b)))?;
-    let t = student(1.0 - UNLIKELY / (2.0 * count), count - 2.0);
+    let t = student(1.0 - UNLIKELY / count, count - 2.0);
     let limit = (count - 1.0) / count.sqrt() * (t * t / (count - 2.0 + t * t)).sqrt();
     (away(&farthest) > limit * deviation).then_some(farthest)
 }
 
-/// The value that Student's t of so many degrees of freedom stays below with this probability.
-fn student(probability: f64, degrees_of_freedom: f64) -> f64 {
-    // From here on t is normal in all its digits that are printed.
-    const MANY: f64 = 1e6;
-    let degrees = degrees_of_freedom.min(MANY);
-    StudentsT::new(0.0, 1.0, degrees).map_or(f64::INFINITY, |t| Real::abs(t.inverse_cdf(probability)))
+/// [`within_t`], whose t is normal in all its digits that are printed from a million degrees of freedom on.
+fn student(level: f64, degrees_of_freedom: f64) -> f64 {
+    within_t(level, degrees_of_freedom.min(1e6))
 }
 
 #[cfg(test)]

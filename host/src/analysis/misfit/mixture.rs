@@ -1,7 +1,8 @@
 //! Student's t that comes nearest to a mixture of such, of different scales: an error whose size is known only roughly.
 
 use brdfit_core::real::Real;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::analysis::chance::above_t;
 
 /// What is left outside of one and of two standard deviations of a normal distribution, nearly: the two quantiles that are matched.
 const OUTSIDE: [f64; 2] = [0.317_310_507_862_914, 0.05];
@@ -43,11 +44,8 @@ pub fn matched(parts: &[(f64, f64)], degrees: f64) -> Student {
 
 /// Where so much of the mixture is outside, on both sides.
 fn quantile(parts: &[(f64, f64)], degrees: f64, outside: f64) -> f64 {
-    let Ok(student) = StudentsT::new(0.0, 1.0, degrees) else {
-        return f64::NAN;
-    };
     let beyond = |x: f64| -> f64 {
-        let of = |&(weight, variance): &(f64, f64)| 2.0 * weight * student.sf(x / Real::sqrt(variance));
+        let of = |&(weight, variance): &(f64, f64)| 2.0 * weight * above_t(x / Real::sqrt(variance), degrees);
         parts.iter().map(of).sum()
     };
     let (mut low, mut high) = (0.0, 1.0);

@@ -2,10 +2,10 @@
 
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use super::hold::hold;
 use crate::analysis::bootstrap::{Noise, copy, quantile, redrawn};
+use crate::analysis::chance::within_t;
 use crate::engine::{self, FitError, FitOptions, Material, Values, View};
 
 /// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
@@ -13,12 +13,7 @@ pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
 
 /// The rise of the cost over the variance of a residual that ends an interval of this level: the square of Student's t (F of 1 and `degrees_of_freedom`).
 pub fn threshold(level: f64, degrees_of_freedom: f64) -> f64 {
-    let share = 0.5 + 0.5 * level;
-    let t = if degrees_of_freedom.is_infinite() {
-        Normal::standard().inverse_cdf(share)
-    } else {
-        StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::INFINITY, |t| t.inverse_cdf(share))
-    };
+    let t = within_t(level, degrees_of_freedom);
     t * t
 }
 

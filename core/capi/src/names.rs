@@ -11,7 +11,7 @@ pub const BRDFIT_PI: f64 = 3.141592653589793;
 
 const _: () = assert!(BRDFIT_PI == <f64 as Real>::PI && BRDFIT_PI as f32 == <f32 as Real>::PI);
 
-/// The version of the library, such as "0.1.0".
+/// The version of the library, such as "0.2.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn brdfit_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

@@ -14,6 +14,14 @@ need() {
     command -v "$1" >/dev/null || fail "$1 is missing: install $2"
 }
 
+# LLVM's linker, which has its version in its name.
+newest() {
+    local found
+    found=$(compgen -c "$1" | grep -E "^$1(-[0-9]+)?$" | sort -V | tail -n 1)
+    [ -n "$found" ] || fail "$1 is missing: install lld-22"
+    echo "$found"
+}
+
 # Sets `toolchain`, and the environment of cargo, for a target.
 choose_toolchain() {
     local target=$1 options=$2 ld
@@ -22,7 +30,8 @@ choose_toolchain() {
     unset RUSTC RUSTC_BOOTSTRAP
     [[ $options != *-Z* ]] || export RUSTC_BOOTSTRAP=1
     build_std=()
-    if [ -d "$(rustc --print sysroot)/lib/rustlib/$target/lib" ]; then
+    # An image for Linux or WebAssembly has no C library, from which rustup's would take memcpy.
+    if [[ $target == *-none* && -d "$(rustc --print sysroot)/lib/rustlib/$target/lib" ]]; then
         toolchain="$(rustc --version), its library for $target"
     else
         export RUSTC=${DEBIAN_RUSTC:-/usr/bin/rustc}
@@ -43,30 +52,60 @@ choose_toolchain() {
             need $ld binutils-riscv64-unknown-elf
             options+=" -C link-arg=-melf32lriscv"
             ;;
+        *)
+            build_std+=(-Zbuild-std-features=compiler-builtins-mem)
+            ;;&
+        wasm*)
+            ld=$(newest wasm-ld)
+            ;;
+        *linux*)
+            ld=$(newest ld.lld)
+            options+=" -C relocation-model=static"
+            ;;
         esac
         export "${variable}_LINKER=$ld"
-        options+=" -C linker-flavor=ld"
+        [[ $target == wasm* ]] || options+=" -C linker-flavor=ld"
     fi
     export "${variable}_RUSTFLAGS=$options"
 }
 
 # Runs an image with arguments.
 emulate() {
-    local machine=$1 image=$2 emulator=qemu-system-arm extra=() arguments=firmware
+    local machine=$1 image=$2
     shift 2
-    if [ "$machine" = virt ]; then
-        emulator=qemu-system-riscv32
-        extra=(-bios none)
-        need $emulator qemu-system-misc
-    else
-        need $emulator qemu-system-arm
+    local run=()
+    case $machine in
+    node)
+        need node nodejs
+        run=(node "$machines_folder/src/outside/node.mjs")
+        ;;
+    i686)
+        # A processor of today runs it as it is.
+        [ "$(uname -m)" = x86_64 ] || run=(qemu-i386)
+        ;;
+    aarch64 | s390x) run=("qemu-$machine") ;;
+    virt*)
+        run=(qemu-system-riscv32 -bios none -M virt)
+        # Without the instructions for atomics and floating point that this machine has otherwise.
+        [ "$machine" != virt-imc ] || run+=(-cpu "rv32,a=false,f=false,d=false")
+        ;;
+    *) run=(qemu-system-arm -M "$machine") ;;
+    esac
+    case ${run[0]-} in
+    qemu-system-riscv32) need "${run[0]}" qemu-system-misc ;;
+    qemu-system-arm) need "${run[0]}" qemu-system-arm ;;
+    qemu-*) need "${run[0]}" qemu-user ;;
+    esac
+    if [[ ${run[0]-} != qemu-system-* ]]; then
+        timeout "${TIMEOUT:-300}" "${run[@]}" "$image" "$@" </dev/null
+        return
     fi
     # The image's name, then its arguments.
-    local semihosting=enable=on,target=native
-    for argument in "$arguments" "$@"; do
+    local semihosting=enable=on,target=native argument
+    for argument in firmware "$@"; do
         semihosting+=,arg=$argument
     done
-    timeout "${TIMEOUT:-300}" "$emulator" -M "$machine" "${extra[@]}" "${emulator_options[@]}" -nographic -monitor none -serial none \
+    timeout "${TIMEOUT:-300}" "${run[@]}" "${emulator_options[@]}" -nographic -monitor none -serial none \
         -semihosting-config "$semihosting" -kernel "$image" </dev/null
 }
 

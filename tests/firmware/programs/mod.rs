@@ -8,6 +8,7 @@ pub mod model;
 pub mod own;
 pub mod scan;
 pub mod search;
+pub mod small;
 pub mod steps;
 pub mod stream;
 pub mod tabled;
@@ -23,7 +24,7 @@ use brdfit_core::residuals::Scan;
 pub type Program = fn(&mut dyn Write) -> fmt::Result;
 
 /// All of them, by name.
-pub const PROGRAMS: [(&str, Program); 8] = [
+pub const PROGRAMS: [(&str, Program); 9] = [
     ("model", model::run),
     ("fit", fit::run),
     ("search", search::run),
@@ -32,6 +33,7 @@ pub const PROGRAMS: [(&str, Program); 8] = [
     ("tabled", tabled::run),
     ("steps", steps::run),
     ("own", own::run),
+    ("small", small::run),
 ];
 
 /// Parameters of all terms.

@@ -4,17 +4,15 @@
 #![no_std]
 #![no_main]
 
+/// How an image begins, writes and ends.
+#[cfg_attr(target_os = "none", path = "outside/debugger.rs")]
+#[cfg_attr(target_os = "linux", path = "outside/linux.rs")]
+#[cfg_attr(target_family = "wasm", path = "outside/node.rs")]
+mod outside;
 #[path = "../programs/mod.rs"]
 mod programs;
 
 use core::fmt::{self, Write};
-
-#[cfg(target_arch = "arm")]
-use cortex_m_rt::entry;
-#[cfg(target_arch = "riscv32")]
-use riscv_rt::entry;
-use semihosting::process::ExitCode;
-use semihosting::{eprintln, io, println, process};
 
 /// Collects a line, since every call to the debugger costs as much as a short fit.
 struct Lines {
@@ -23,11 +21,17 @@ struct Lines {
 }
 
 impl Lines {
+    fn new() -> Self {
+        Lines {
+            buffer: [0; 128],
+            filled: 0,
+        }
+    }
+
     fn flush(&mut self) -> fmt::Result {
         let text = self.buffer.get(..self.filled).ok_or(fmt::Error)?;
         self.filled = 0;
-        let mut stdout = io::stdout().map_err(|_| fmt::Error)?;
-        io::Write::write_all(&mut stdout, text).map_err(|_| fmt::Error)
+        outside::write(text)
     }
 }
 
@@ -44,40 +48,13 @@ impl Write for Lines {
     }
 }
 
-#[entry]
-fn main() -> ! {
-    let mut exit = ExitCode::FAILURE;
-    match semihosting::experimental::env::args::<256>() {
-        Err(_) => eprintln!("no command line"),
-        Ok(args) => {
-            // The first argument names the image.
-            for name in (&args).skip(1).flatten() {
-                exit = run(name);
-            }
-        }
-    }
-    exit.exit_process()
-}
-
-fn run(name: &str) -> ExitCode {
-    let mut lines = Lines {
-        buffer: [0; 128],
-        filled: 0,
+/// Runs the program of this name.
+fn run(name: &str) -> fmt::Result {
+    let mut lines = Lines::new();
+    let Some((_, program)) = programs::PROGRAMS.iter().find(|program| program.0 == name) else {
+        writeln!(lines, "no program {name}")?;
+        return Err(fmt::Error);
     };
-    match programs::PROGRAMS.iter().find(|program| program.0 == name) {
-        None => {
-            eprintln!("no program {name}");
-            ExitCode::FAILURE
-        }
-        Some((_, program)) => match program(&mut lines).and_then(|()| lines.flush()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(_) => ExitCode::FAILURE,
-        },
-    }
-}
-
-#[panic_handler]
-fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
-    println!("{info}");
-    process::exit(101)
+    program(&mut lines)?;
+    lines.flush()
 }

@@ -266,17 +266,6 @@ fn values_in_percent_and_in_no_unit_of_a_brdf() {
             "{head}: {message}"
         );
     }
-    // What is darker than anything is no scan, rather than one whose fit is 0.
-    let dark = text.lines().enumerate().map(|(k, line)| match line.rsplit_once(',') {
-        Some((angles, _)) if k > 0 => format!("{angles},{}e-300\n", k + 1),
-        _ => "theta_i,theta_s,brdf\n".to_string(),
-    });
-    let file = write(&folder, "scan.csv", dark.collect::<String>());
-    let message = fail(&["fit", &file]);
-    assert!(
-        message.contains("per steradian, which nothing measures; multiply"),
-        "{message}"
-    );
     // Of what R is the percentage, a person must say.
     let file = write(&folder, "scan.csv", text.replace("BRF (%)", "R (%)"));
     assert!(fail(&["fit", &file]).contains("--quantity brf"));

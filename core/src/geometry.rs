@@ -16,6 +16,8 @@ pub struct Sample<R> {
     /// Azimuth of scattering less azimuth of incidence, radians; pi is forward.
     pub delta_phi: R,
     /// Measured BRDF f, sr^-1, above 0.
+    ///
+    /// A scan whose largest is below 1e-9, in `f32` below 6e-5, is to be multiplied by a power of two before: squares of 1 / f lose digits, and the weights of the model have the same factor.
     pub brdf: R,
     /// Factor of the sample's residual of ln f, dimensionless; in proportion to 1 / (standard deviation of ln f), or 1. 0 leaves the sample out.
     pub weight: R,

@@ -306,3 +306,12 @@ pub const SANDWICH: Tolerance = Tolerance(1e-13);
 
 /// ln of what is seen through an aperture of 2 degrees of a lobe of m = 0.1 against a fine grid of it, which is good to about 1e-4; measured between 2e-5 and 2e-4.
 pub const APERTURE: Tolerance = Tolerance(2e-4);
+
+// Scans of any size.
+
+/// Relative difference of parameters and standard errors of a scan times 1e-300 to 1e300; measured 4.2e-10.
+pub const SCALED_F64: Tolerance = Tolerance(1e-9);
+/// The same in single precision, times 1e-30 to 1e30; measured 1.6e-5.
+pub const SCALED_F32: Tolerance = Tolerance(2e-5);
+/// The same of what `fit` tells of a scan with parameters that are determined only together; measured 1.8e-6.
+pub const SCALED_OUTPUT: Tolerance = Tolerance(3e-6);

@@ -41,6 +41,7 @@ pub use branch::Visit;
 pub use region::Region;
 pub use scene::Scene;
 
+use crate::scale::Scale;
 use crate::{FitError, FitOptions, Values, descend};
 
 /// What is to be proved, and what may end it.
@@ -87,13 +88,38 @@ pub fn certify(
     best: &Params<f64>,
     claim: &Claim,
 ) -> Result<Certificate, FitError> {
+    let Some(scale) = Scale::of(&[samples], options) else {
+        return certify_ordinary(samples, options, best, claim);
+    };
+    let model = options.model;
+    let best = paper(&scale.taken(model, &best.to_array().into())).ok_or(FitError::NoProof(model.name))?;
+    let proved = certify_ordinary(&scale.samples(samples), &scale.options(options)?, &best, claim)?;
+    let params = scale.given(model, &proved.params.to_array().into());
+    Ok(Certificate {
+        params: paper(&params).unwrap_or(proved.params),
+        ..proved
+    })
+}
+
+/// The parameters of Eq. 14 that these values are.
+fn paper(values: &Values) -> Option<Params<f64>> {
+    <[f64; 6]>::try_from(&values[..]).ok().map(Params::from_array)
+}
+
+/// The same of samples of an ordinary size.
+fn certify_ordinary(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    best: &Params<f64>,
+    claim: &Claim,
+) -> Result<Certificate, FitError> {
     let scene = scene(samples, options)?;
     // Whatever is wrong with the samples or the terms is found here.
     let down = |start: Params<f64>| descend(samples, options, &[Values::from(start.to_array())]);
     down(*best)?;
     let down = |start: Params<f64>| {
         let (_, end) = down(start).ok()??;
-        Some(Params::from_array(end[..].try_into().ok()?))
+        paper(&end)
     };
     Ok(prove(&scene, best, &down, claim))
 }
@@ -103,16 +129,11 @@ pub fn certify(
 /// # Errors
 /// [`FitError::Sample`], and [`FitError::NoProof`] if the model is not Eq. 14.
 pub fn scene(samples: &[Sample<f64>], options: &FitOptions) -> Result<Scene, FitError> {
-    let all = |values: &Values| {
-        <[f64; 6]>::try_from(&values[..])
-            .ok()
-            .filter(|_| options.model.is_paper())
-    };
+    let all = |values: &Values| paper(values).filter(|_| options.model.is_paper());
     let (lower, upper) = all(&options.lower)
         .zip(all(&options.upper))
         .ok_or(FitError::NoProof(options.model.name))?;
-    let bounds = [lower, upper].map(Params::from_array);
-    Scene::new(samples, options.terms, &bounds[0], &bounds[1]).map_err(|(index, error)| FitError::Sample(index, error))
+    Scene::new(samples, options.terms, &lower, &upper).map_err(|(index, error)| FitError::Sample(index, error))
 }
 
 /// Less than this share of the cost is what a fit leaves where it converges.

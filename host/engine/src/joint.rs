@@ -13,6 +13,7 @@ use crate::instrument::beside::{Beside, Rows};
 use crate::instrument::calibration;
 use crate::instrument::setup::{self, Setup};
 use crate::layout::Layout;
+use crate::scale::Scale;
 use crate::search::single;
 use crate::until::Watched;
 use crate::{FitError, FitOptions, Values};
@@ -51,6 +52,17 @@ pub struct Fitted {
 /// # Errors
 /// The place of the scan that cannot be fitted, and why; [`FitError::TooFew`] and [`FitError::Limit`] of all scans together come with the number of scans.
 pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
+    let Some(scale) = Scale::of(all, options) else {
+        return fit_ordinary(all, shared, options);
+    };
+    let inside: Vec<_> = all.iter().map(|samples| scale.samples(samples)).collect();
+    let inside: Vec<_> = inside.iter().map(|samples| &samples[..]).collect();
+    let options = scale.options(options).map_err(|error| (all.len(), error))?;
+    Ok(scale.joint(options.model, fit_ordinary(&inside, shared, &options)?))
+}
+
+/// The same of samples of an ordinary size.
+fn fit_ordinary(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
     let together = |error| (all.len(), error);
     let mut options = options.model.whole_of(options).map_err(together)?;
     options.instrument.offsets = None;

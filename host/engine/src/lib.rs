@@ -19,6 +19,7 @@ pub mod instrument;
 pub mod joint;
 pub mod models;
 pub mod robust;
+pub mod scale;
 pub mod simd;
 pub mod trace;
 pub mod uncertainty;

@@ -1,11 +1,14 @@
 //! A model as the program knows it: what it is called, its parameters, and its computations, compiled.
 
+use std::f64::consts::LN_2;
+
 use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::{Parameter, Role};
 
 use crate::compiled::{Both, Compiled, Whole, parameters_of, whole};
 use crate::models::MODELS;
+use crate::scale::{self, Scale};
 use crate::simd::SCALAR;
 use crate::{FitError, FitOptions, Values};
 
@@ -153,12 +156,22 @@ impl Model {
 
     /// ln f in the directions of `sample`, f in sr^-1, and its derivatives by the parameters; none beyond the horizon.
     pub fn gradient(&self, values: &[f64], sample: &Sample<f64>) -> Option<(f64, Values)> {
-        (self.whole.gradient)(values, sample)
+        let (inside, exponent) = scale::ordinary(self, values);
+        let (ln_f, mut gradient) = (self.whole.gradient)(&inside, sample)?;
+        if exponent != 0 {
+            gradient = Scale {
+                brdf: -exponent,
+                weight: 0,
+            }
+            .given(self, &gradient);
+        }
+        Some((ln_f + f64::from(exponent) * LN_2, gradient))
     }
 
     /// ln f in the directions of `sample`, f in sr^-1; none beyond the horizon.
     pub fn ln_f(&self, values: &[f64], sample: &Sample<f64>) -> Option<f64> {
-        (self.whole.ln_f)(values, sample)
+        let (inside, exponent) = scale::ordinary(self, values);
+        Some((self.whole.ln_f)(&inside, sample)? + f64::from(exponent) * LN_2)
     }
 
     /// What is compiled of the terms of `options`, and the options for it: what no compiled set leaves out is held.

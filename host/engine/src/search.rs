@@ -15,6 +15,7 @@ use crate::instrument::setup::{self, Setup};
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
 use crate::outcome::{FitError, Minimum, Outcome};
+use crate::scale::Scale;
 use crate::until::Watched;
 use crate::{Material, Values, View, robust, uncertainty};
 
@@ -31,6 +32,16 @@ pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, Fit
 /// # Errors
 /// [`FitError`].
 pub fn fit_from(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
+    let Some(scale) = Scale::of(&[samples], options) else {
+        return fit_ordinary(samples, options, known);
+    };
+    let known: Vec<Values> = known.iter().map(|values| scale.taken(options.model, values)).collect();
+    let found = fit_ordinary(&scale.samples(samples), &scale.options(options)?, &known)?;
+    Ok(scale.outcome(found))
+}
+
+/// The same of samples of an ordinary size.
+fn fit_ordinary(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
     if options.robust {
         return robust::fit(samples, options, known);
     }
@@ -49,7 +60,13 @@ pub fn descend(
     options: &FitOptions,
     starts: &[Values],
 ) -> Result<Option<(f64, Values)>, FitError> {
-    setup::descend(samples, options, starts)
+    let model = options.model;
+    let Some(scale) = Scale::of(&[samples], options) else {
+        return setup::descend(samples, options, starts);
+    };
+    let starts: Vec<Values> = starts.iter().map(|values| scale.taken(model, values)).collect();
+    let end = setup::descend(&scale.samples(samples), &scale.options(options)?, &starts)?;
+    Ok(end.map(|(cost, values)| (scale.cost(cost), scale.given(model, &values))))
 }
 
 /// Refuses fewer samples and priors than free parameters.

@@ -11,6 +11,7 @@ use brdfit_core::search::{self, Candidate, Evaluations, Region, Scene};
 use crate::clock::Stopwatch;
 use crate::compiled::Kernel;
 use crate::layout::Layout;
+use crate::scale::Scale;
 use crate::{FitError, FitOptions, Method, Values};
 
 /// An improvement.
@@ -49,8 +50,13 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// # Errors
 /// [`FitError`].
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
-    let (compiled, options) = options.model.compiled(options)?;
-    (compiled.trace)(samples, &options)
+    let Some(scale) = Scale::of(&[samples], options) else {
+        let (compiled, options) = options.model.compiled(options)?;
+        return (compiled.trace)(samples, &options);
+    };
+    let (compiled, options) = options.model.compiled(&scale.options(options)?)?;
+    let course = (compiled.trace)(&scale.samples(samples), &options)?;
+    Ok(scale.trace(options.model, course))
 }
 
 /// The search of one scan, watched; `exact` is the same scan in `f64`.

@@ -11,6 +11,9 @@ use crate::{FitOptions, Values};
 /// Where kappa is 0 there is no derivative by it: gradients are taken here, and displacements are told for there, so that their products are right.
 pub const NEAR_ZERO: f64 = 1e-4;
 
+/// A displacement of this size stands for one without any limit, of which 0 times a slope of 0 is no number.
+pub const UNKNOWN: f64 = f64::MAX;
+
 /// How the residuals of a scan are correlated along the angle, and what follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Misfit {
@@ -72,15 +75,21 @@ impl Uncertainty {
     pub fn with_axes(mut self, axes: Vec<Values>) -> Self {
         let count = self.places.len();
         let has = |i: usize| matches!(self.places[i], Some(Place::Inside | Place::Unseen));
-        let covariance = |i: usize, j: usize| {
-            let products = axes.iter().map(|axis| axis[i] * axis[j]);
+        // Squares of what is far from 1 are no numbers: a power of two of each parameter is taken out before, which changes no digit.
+        let sizes: Vec<i32> = (0..count).map(|i| size(axes.iter().map(|axis| axis[i]))).collect();
+        let one = |axis: &Values| Values::from_fn(count, |i| libm::ldexp(axis[i], -sizes[i]));
+        let ordinary: Vec<Values> = axes.iter().map(one).collect();
+        let product = |i: usize, j: usize| {
+            let products = ordinary.iter().map(|axis| axis[i] * axis[j]);
             if has(i) && has(j) { products.sum() } else { 0.0 }
         };
-        let stderr = Values::from_fn(count, |i| Real::sqrt(covariance(i, i)));
+        let root = |i: usize| Real::sqrt(product(i, i));
+        let stderr = Values::from_fn(count, |i| libm::ldexp(root(i), sizes[i]));
+        let covariance = |i: usize, j: usize| libm::ldexp(product(i, j), sizes[i] + sizes[j]);
         let correlation = |i: usize, j: usize| {
-            let scale = stderr[i] * stderr[j];
+            let scale = root(i) * root(j);
             if scale > 0.0 && scale.is_finite() {
-                (covariance(i, j) / scale).clamp(-1.0, 1.0)
+                (product(i, j) / scale).clamp(-1.0, 1.0)
             } else {
                 0.0
             }
@@ -113,8 +122,23 @@ pub fn inside_of_bound(push: f64) -> f64 {
 
 /// Standard error of a quantity with this gradient from axes of one standard error.
 pub fn along(axes: &[Values], gradient: &[f64]) -> f64 {
-    let part = |axis: &Values| -> f64 { axis.iter().zip(gradient).map(|(a, b)| a * b).sum() };
-    axes.iter().map(|axis| part(axis) * part(axis)).sum::<f64>().sqrt()
+    let product = |(&a, &b): (&f64, &f64)| match f64::abs(a) == UNKNOWN && b != 0.0 {
+        true => f64::INFINITY,
+        false => a * b,
+    };
+    let part = |axis: &Values| -> f64 { axis.iter().zip(gradient).map(product).sum() };
+    let size = size(axes.iter().map(part));
+    let ordinary = |axis: &Values| libm::ldexp(part(axis), -size);
+    let squares = axes.iter().map(|axis| ordinary(axis) * ordinary(axis));
+    libm::ldexp(squares.sum::<f64>().sqrt(), size)
+}
+
+/// The exponent of the largest of some numbers, where squares of them may be no numbers or lose digits; else 0.
+fn size(numbers: impl Iterator<Item = f64>) -> i32 {
+    const ORDINARY: i32 = 400;
+    let known = numbers.map(f64::abs).filter(|&x| x < UNKNOWN);
+    let size = libm::frexp(known.fold(0.0, f64::max)).1;
+    if size.abs() > ORDINARY { size } else { 0 }
 }
 
 /// Of the optimum `x` of a scan of `samples` rows, within `bounds`; one pass.

@@ -8,9 +8,11 @@ use brdfit_core::real::Real;
 use serde::Serialize;
 
 use crate::analysis::derived::Derived;
+use crate::engine::scale::Scale;
 use crate::engine::{FitOptions, Outcome, robust};
 use crate::input::units::{Forward, Quantity};
 use crate::input::{Measurement, plane, side};
+use crate::number::four;
 
 /// A hint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,6 +71,7 @@ fn before_fit(measurement: &Measurement) -> Vec<Hint> {
 /// What the samples and their fit tell together.
 pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Vec<Hint> {
     let mut hints = before_fit(measurement);
+    hints.extend(unit(&measurement.samples, options));
     hints.extend(quantity(measurement, options, outcome, derived));
     let moved = match outcome.offset {
         Some(_) => None,
@@ -101,6 +104,21 @@ pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome
         ));
     }
     hints
+}
+
+/// Is the BRDF of a size that no surface has, so that it has another unit?
+fn unit(samples: &[Sample<f64>], options: &FitOptions) -> Option<Hint> {
+    let scale = Scale::of(&[samples], options)?;
+    let largest = samples.iter().map(|sample| sample.brdf).fold(0.0, f64::max);
+    scale.is_of_another_unit().then(|| {
+        Hint::new(
+            "unit",
+            format!(
+                "the largest BRDF is {} per steradian, which no surface has: the weights are in the unit of the file, whichever that is, and so are their bounds if no others were given",
+                four(largest)
+            ),
+        )
+    })
 }
 
 /// Are the values a reflectance factor, or not calibrated? More light comes back than went in, and not only by a lobe: rho_d is on its bound, or near 1 and the excess clear at all angles of incidence.

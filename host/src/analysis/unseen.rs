@@ -3,7 +3,7 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::uncertainty::Place;
 
-use crate::engine::uncertainty::Uncertainty;
+use crate::engine::uncertainty::{UNKNOWN, Uncertainty};
 use crate::engine::{FitOptions, Outcome, Values};
 
 /// A lobe whose part of f is below this at every sample changes no digit of the cost that counts.
@@ -74,7 +74,7 @@ pub fn doubted(known: &Uncertainty) -> Uncertainty {
     }
     let mut axes = known.axes.clone();
     for place in known.inside() {
-        axes[place] = Values::from_fn(known.places.len(), |k| if k == place { f64::MAX } else { 0.0 });
+        axes[place] = Values::from_fn(known.places.len(), |k| if k == place { UNKNOWN } else { 0.0 });
     }
     known.clone().with_axes(axes)
 }

@@ -12,8 +12,6 @@ const RIGHT_ANGLE: f64 = 1.6;
 const BRIGHTEST: f64 = 2.0;
 /// A BRDF that no surface has: light of 100 nm from a mirror of 1 m goes into 1e-14 sr.
 const MARK: f64 = 1e15;
-/// A BRDF that no instrument sees anywhere: squares of its ratio to 1 leave the range of numbers.
-const DARK: f64 = 1e-30;
 /// A scan over fewer degrees may be of a peak alone.
 const WIDE: f64 = 60.0;
 /// Fewer samples say little of all directions.
@@ -32,7 +30,6 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
         unit_of_angles(scan, unit)?;
     }
     full_turn(scan, unit)?;
-    too_dark(scan, unit, options)?;
     if options.value_unit.is_none() {
         size_of_values(scan, unit, options)?;
     }
@@ -142,29 +139,6 @@ fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error
     .help("theta_s is counted from the normal, negative on the side of incidence: subtract 90 degrees if so");
     Err(Error {
         column: scan.places.theta_s,
-        ..error
-    })
-}
-
-/// Refuses scans that are darker than anything measured, which a search in the usual bounds cannot fit.
-fn too_dark(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result<(), Error> {
-    let quantity = options.quantity.unwrap_or(scan.quantity);
-    let brdf = |row: &Row| {
-        quantity
-            .brdf(row.value / scan.about.divisor, unit.radians(row.theta_s))
-            .ok()
-    };
-    let largest = scan.rows.iter().filter_map(brdf).fold(0.0, f64::max);
-    if !(0.0 < largest && largest < DARK) {
-        return Ok(());
-    }
-    let error = Error::new(format!(
-        "the largest BRDF is {} per steradian, which nothing measures",
-        shortest(largest)
-    ))
-    .help("multiply the values by a power of ten: that changes the weights by it, and nothing else");
-    Err(Error {
-        column: scan.places.value,
         ..error
     })
 }

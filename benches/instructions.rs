@@ -1,6 +1,6 @@
 //! Instructions of a pass over a scan and of a whole search, counted by `valgrind --tool=callgrind`: they do not depend on what else the machine does.
 //!
-//! `cargo run --release --example instructions > benches/results/instructions.md`; with `--check` it counts again, but for whole searches of Eq. 14, and fails if anything takes 3 % more than that table says, so that a lost vectorisation is seen; with other arguments it does the work that is counted.
+//! `cargo run --release -p brdfit-instructions > benches/results/instructions.md`; with `--check` it counts again, but for whole searches of Eq. 14, and fails if anything takes 3 % more than that table says, so that a lost vectorisation is seen; with other arguments it does the work that is counted.
 //!
 //! Valgrind has no AVX-512: of that the functions of this program are counted that compute with its registers.
 
@@ -207,7 +207,7 @@ fn table() {
         "Counted by valgrind's callgrind, which knows no AVX-512, so the same on every x86-64 processor and with any load; the compiler's version and profile change them."
     );
     println!(
-        "Regenerate: `cargo run --release --example instructions > benches/results/instructions.md`; `-- --check` fails if a count is 3 % above."
+        "Regenerate: `cargo run --release -p brdfit-instructions > benches/results/instructions.md`; `-- --check` fails if a count is 3 % above."
     );
     println!("{}", compiler());
     println!("{WIDE}{}.\n", wide_functions());

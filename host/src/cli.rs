@@ -3,13 +3,15 @@
 use std::ffi::OsString;
 use std::io::Write;
 
-use clap::{ColorChoice, CommandFactory, Parser, Subcommand};
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{ColorChoice, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::commands::{
     batch, certify, compare, completions, converge, export, fit, inspect, joint, man, merge, paper, profile, report,
     simulate, stability,
 };
 use crate::error::{EXIT_CODE, Error};
+use crate::input::formats;
 use crate::plain::{self, Lines};
 use crate::streams::{Ended, Streams};
 
@@ -56,14 +58,28 @@ enum Command {
 
 /// The program's commands and options, of which help, completions and manual are made.
 pub fn command() -> clap::Command {
-    Cli::command()
+    Cli::command().mut_subcommands(with_formats)
+}
+
+/// A command whose `--input-format`, if it has one, takes the names of the formats and shows them in its help.
+fn with_formats(command: clap::Command) -> clap::Command {
+    const ID: &str = "input_format";
+    let reads = command.get_arguments().any(|argument| argument.get_id() == ID);
+    if !reads {
+        return command;
+    }
+    let names = formats::all()
+        .iter()
+        .map(|format| PossibleValue::new(format.name).help(format.about));
+    command.mut_arg(ID, |argument| argument.value_parser(PossibleValuesParser::new(names)))
 }
 
 /// Runs the program on its arguments, of which the first is its own name; the result is the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let color = color(&arguments, streams.color);
-    let cli = match Cli::try_parse_from(&arguments) {
+    let parsed = command().try_get_matches_from(&arguments);
+    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return explain(&error, color, streams),
     };
@@ -134,8 +150,8 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),
-        Command::Completions(arguments) => completions::run(arguments, Cli::command(), streams),
-        Command::Man(arguments) => man::run(arguments, Cli::command(), streams),
+        Command::Completions(arguments) => completions::run(arguments, self::command(), streams),
+        Command::Man(arguments) => man::run(arguments, self::command(), streams),
     }?;
     Ok(Ended::default())
 }

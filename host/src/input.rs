@@ -13,17 +13,23 @@ mod cut;
 mod direction;
 mod doubt;
 mod facts;
+mod find;
+mod finder;
 pub mod format;
-pub(crate) mod formats;
+pub mod formats;
 pub mod head;
+mod incidence;
 mod join;
+pub mod kind;
 pub mod left_out;
+pub mod measurement;
 pub mod options;
 pub mod own;
 pub mod part;
 pub mod plane;
 mod polarisation;
 pub mod raw;
+pub mod read_as;
 mod repeats;
 pub mod role;
 mod rows;
@@ -40,85 +46,20 @@ pub mod weight;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use brdfit_core::geometry::Sample;
-
 use crate::engine::FitError;
 use crate::error::Error;
-use crate::plain::{plain, some_of};
+use crate::plain::some_of;
 pub use about::About;
-use about::Kind;
 pub use bytes::STDIN;
 use format::Format;
+use kind::Kind;
 pub use left_out::LeftOut;
-pub use options::{ReadAs, ReadOptions};
+pub use measurement::{Measurement, label};
+pub use options::ReadOptions;
 use raw::RawScan;
+pub use read_as::ReadAs;
 use source::Source;
 pub use units::azimuth;
-
-/// A scan as it was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measurement {
-    /// Where it came from, as the user named it.
-    pub file: String,
-    /// Which scan of the file it is, such as `R` or `550 nm`; none if the file says nothing of the kind.
-    pub name: Option<String>,
-    /// The valid samples in order of the file, at least one; the mean of their squared weights is 1.
-    pub samples: Vec<Sample<f64>>,
-    /// The line of each sample; the first line of a file is 1, and 0 stands for none.
-    pub lines: Vec<u64>,
-    /// The standard deviation of ln f that a weight of 1 stands for, if the weights come from standard deviations; dimensionless.
-    pub sigma_ln: Option<f64>,
-    /// The standard deviations that the file gives, one a sample; none if it does not give all.
-    pub deviations: Vec<weight::Deviation>,
-    /// What the numbers of the file were taken for.
-    pub read_as: ReadAs,
-    /// What was left out, and why.
-    pub left_out: Vec<LeftOut>,
-    /// The samples that were left out although they are valid, and why.
-    pub masked: Vec<(left_out::Reason, Sample<f64>)>,
-    /// What the reader understood of the file.
-    pub about: About,
-}
-
-impl Measurement {
-    /// Of samples that are from no file: `file` is what messages call them.
-    ///
-    /// `sigma_ln` is the standard deviation of ln f that a weight of 1 stands for, if the weights come from standard deviations.
-    pub fn of_samples(file: impl Into<String>, samples: Vec<Sample<f64>>, sigma_ln: Option<f64>) -> Measurement {
-        Measurement {
-            file: file.into(),
-            name: None,
-            lines: vec![0; samples.len()],
-            sigma_ln,
-            deviations: Vec::new(),
-            read_as: ReadAs {
-                format: format::SAMPLES,
-                angles: units::Angles::Rad,
-                quantity: units::Quantity::Brdf,
-                forward: units::Forward::Positive,
-                weighted: samples.iter().any(|sample| sample.weight != samples[0].weight),
-            },
-            samples,
-            left_out: Vec::new(),
-            masked: Vec::new(),
-            about: About::default(),
-        }
-    }
-
-    /// The file and the name of the scan in it, for people.
-    pub fn label(&self) -> String {
-        label(&self.file, self.name.as_deref())
-    }
-}
-
-/// A file and the name of a scan in it, for people.
-pub fn label(file: &str, scan: Option<&str>) -> String {
-    let label = match scan {
-        Some(scan) => format!("{file} [{scan}]"),
-        None => file.to_string(),
-    };
-    plain(&label).into_owned()
-}
 
 /// Reads every scan of every file, in order; a file may hold several.
 ///
@@ -239,14 +180,14 @@ pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Meas
 fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
     let (format, scans) = formats::scans(bytes, options)?;
     if let Some(scan) = scans.first() {
-        options.refuse_for(scan.about.kind, format)?;
+        options.refuse_for(scan.about.kind, format.title)?;
     }
     let mut scans = raw::select(scans, &options.column)?;
     cut::suspect(format, bytes, &mut scans);
     for scan in &mut scans {
         scan.about.sources.push(Source::new(file, bytes));
         scan.about.asked = options.clone();
-        about::give_theta_i(file, scan, options)?;
+        incidence::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;
         }

@@ -277,7 +277,7 @@ mod tests {
     fn json_says_what_words_say() {
         use clap::Parser;
 
-        use crate::input::ReadOptions;
+        use crate::input::{self, ReadOptions};
 
         #[derive(Parser)]
         struct Both {
@@ -328,12 +328,15 @@ mod tests {
         for wrong in [
             r#"{"colour": 1}"#,
             r#"{"columns": ["x=1"]}"#,
-            r#"{"input-format": "doc"}"#,
             r#"{"weight-angle": ["60"]}"#,
         ] {
             assert!(serde_json::from_str::<ReadOptions>(wrong).is_err(), "{wrong}");
         }
         assert!(serde_json::from_str::<SearchArguments>(r#"{"method": "mine"}"#).is_err());
+        // A format is looked up where the file is read.
+        let unknown: ReadOptions = serde_json::from_str(r#"{"input-format": "doc"}"#).unwrap();
+        let error = input::parse("file", b"", &unknown).unwrap_err().to_string();
+        assert!(error.contains("there is no format 'doc'"), "{error}");
     }
 
     #[test]

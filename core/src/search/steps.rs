@@ -1,44 +1,31 @@
 //! The default method as steps of at most one pass each.
 
+mod plan;
+mod round;
+mod saved;
+
 use heapless::Vec;
 
-use super::ends::{Ends, NEAR};
-use super::{BANDS, Candidate, Evaluations, Found, MINIMA, Region, Scene, Waits, log};
+use super::ends::Ends;
+use super::{Candidate, Evaluations, Found, MINIMA, Scene, Waits, log};
 use crate::lm::{Bounds, Fit, Options};
 use crate::minima::{self, Minima, Minimum};
-use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
-use crate::saved::{Saved, Tape};
 
-/// The default method makes at most this many candidates, if nothing else is asked for.
-pub const CANDIDATES: u32 = (ROUNDS + CYCLES * BANDS) * ROUND;
+pub use plan::CANDIDATES;
+
 /// Fits that [`super::search`] has under way at most; a round needs no more.
 pub const FITS: usize = SLOPES_BEGUN;
 
-/// Candidates of a round.
-const ROUND: u32 = 15;
-/// Rounds that are made in any case.
-const ROUNDS: u32 = 5;
-/// After so many parts of the range of slopes a scan can be settled.
-const FIRST_BANDS: u32 = 3;
-/// How often each part is looked at where that does not settle it.
-const CYCLES: u32 = 3;
 /// How many of a round's candidates are tried by cost, and for how many of them a fit begins.
 const TRIED: usize = 7;
 const BEGUN: usize = 3;
-/// Candidates with the slopes of the best, and for how many of a group of them a fit begins.
-const VARIATIONS: u32 = INDICES.len() as u32;
+/// For how many of a group of variations a fit begins, and for how many with other slopes than the best.
 const GROUP_BEGUN: usize = 2;
-/// Candidates with other slopes than the best, and for how many a fit begins.
-const SLOPES: u32 = 16;
 const SLOPES_BEGUN: usize = 4;
-/// Variations are made again of a better end that they lead to, so often at most.
-const LOOPS: u32 = 3;
 /// Passes of a fit before it is decided which of a round go on; a variation begins nearer to where it ends.
 const SHORT: u32 = 4;
 const VARIATION_SHORT: u32 = 3;
-/// Rounds that must have led to the best end: after the first rounds, and after the first parts of the range of slopes.
-const HITS: (u32, u32) = (2, 3);
 /// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
 const ROUGH: f64 = 1e-8;
 /// [`Options::max_passes`] of these fits.
@@ -318,243 +305,6 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         }
     }
 
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn choose(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        if self.phase == Phase::Known {
-            self.phase = Phase::Rounds;
-        }
-        if self.phase == Phase::Rounds {
-            if self.made < self.candidates && !self.is_settled(scene) {
-                let first = self.made;
-                self.made = first.saturating_add(ROUND).min(self.candidates);
-                return self.begin_round(first, self.made, kind(self.round));
-            }
-            self.phase = Phase::Variations;
-            (self.again, self.group) = (0, 0);
-        }
-        self.vary();
-    }
-
-    /// Are further candidates of no use?
-    fn is_settled(&mut self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
-        if self.makes_all() {
-            return false;
-        }
-        let ends = &self.ends;
-        if self.round == ROUNDS {
-            let rivals = ends.has_rival_fit(scene) || ends.has_rival_end(scene);
-            self.unsettled = ends.best_hits() < HITS.0 || rivals || ends.is_exact();
-        }
-        if self.round == ROUNDS + FIRST_BANDS && self.unsettled {
-            return ends.best_hits() >= HITS.1 && !ends.has_rival_end(scene) && !ends.is_exact();
-        }
-        self.round >= ROUNDS && !self.unsettled
-    }
-
-    /// The next round of variations of the best, and again of a better one that they lead to.
-    fn vary(&mut self) {
-        let groups = GROUPS.len() as u32;
-        let rounds = groups + u32::from(self.unsettled);
-        if self.group == rounds {
-            let least = self.centre.1 * R::of(1.0 - 1e-6);
-            self.again += 1;
-            self.group = 0;
-            if !(self.ends.best.at.cost < least) || self.again == LOOPS {
-                (self.phase, self.task) = (Phase::Last, Task::Last);
-                self.ends.best.stop = None;
-                return;
-            }
-        }
-        if self.group == 0 {
-            self.centre = (self.ends.best.x, self.ends.best.at.cost);
-        }
-        let group = self.group;
-        self.group += 1;
-        if let Some(&end) = GROUPS.get(group as usize) {
-            let before = group.checked_sub(1).and_then(|before| GROUPS.get(before as usize));
-            let first = self.again * VARIATIONS;
-            self.begin_round(first + before.unwrap_or(&0), first + end, Kind::Index);
-        } else {
-            let first = self.again * SLOPES;
-            self.begin_round(first, first + SLOPES, Kind::Slopes);
-        }
-    }
-
-    fn begin_round(&mut self, first: u32, end: u32, kind: Kind) {
-        self.round += 1;
-        (self.next, self.end, self.kind) = (first, end, kind);
-        self.starts.clear();
-        self.fits.clear();
-        self.task = Task::Propose;
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn propose(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let region = match self.kind {
-            Kind::Everywhere => Region::Everywhere,
-            Kind::Band(band) => Region::Band(band),
-            Kind::Index => Region::Index(&self.centre.0),
-            Kind::Slopes => Region::Slopes(&self.centre.0),
-        };
-        self.candidate = scene.propose(&self.bounds, self.seed, u64::from(self.next), region);
-        self.evaluations.cost += self.candidate.passes;
-        self.rank();
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn weigh(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let before = self.candidate.passes;
-        scene.weigh(&self.bounds, &mut self.candidate);
-        self.evaluations.cost += self.candidate.passes - before;
-        self.rank();
-    }
-
-    /// Puts a candidate that waits for nothing into its place.
-    fn rank(&mut self) {
-        if self.candidate.waits != Waits::No {
-            self.task = Task::Weigh;
-            return;
-        }
-        let Candidate { x, rank, .. } = self.candidate;
-        // Narrow bounds make one of several.
-        if self.starts.iter().all(|start| start.x != x) {
-            let index = u64::from(self.next);
-            minima::insert(&mut self.starts, &at(x, rank, index));
-        }
-        self.next += 1;
-        self.task = Task::Propose;
-        if self.next >= self.end {
-            (self.levelled, self.place, self.task) = (0, 0, Task::Level);
-        }
-    }
-
-    /// So many fits of this round begin.
-    fn begun(&self) -> u32 {
-        let begun = match self.kind {
-            Kind::Index => GROUP_BEGUN,
-            Kind::Slopes => SLOPES_BEGUN,
-            _ => BEGUN,
-        };
-        begun.min(F) as u32
-    }
-
-    /// The cost of the next start, which moves to its place among those that have one; these are the first.
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn level(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let (place, begun) = (self.place as usize, self.begun());
-        if let Some(start) = self.starts.get_mut(place) {
-            let (x, cost) = scene.level(&self.bounds, &start.x);
-            (start.x, start.cost) = (x, cost);
-            self.evaluations.cost += 1;
-            self.ends.poorest = self.ends.poorest.max(cost);
-            let last = self
-                .levelled
-                .checked_sub(1)
-                .and_then(|last| self.starts.get(last as usize));
-            let takes = match last {
-                Some(last) if self.levelled == begun => minima::less(cost, last.cost),
-                _ => {
-                    self.levelled += 1;
-                    true
-                }
-            };
-            if takes && let Some(levelled) = self.starts.get_mut(..=place) {
-                let count = self.levelled as usize;
-                if let Some((new, others)) = levelled.split_last_mut()
-                    && let Some(old) = others.get_mut(count - 1)
-                {
-                    core::mem::swap(old, new);
-                }
-                minima::sift(levelled.get_mut(..count).unwrap_or_default());
-            }
-        }
-        self.place += 1;
-        if self.place as usize >= self.starts.len() {
-            (self.place, self.task) = (0, Task::Begin);
-        }
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn begin_fit(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        if let Some(&Minimum { x, first_start, .. }) = self.starts.get(self.place as usize) {
-            let fit = Fit::begin(scene, &self.bounds, x, &self.rough());
-            self.evaluations.linearize += 1;
-            // There is room.
-            let _ = self.fits.push(Trial {
-                fit,
-                start: first_start,
-            });
-        }
-        self.begun_or_not();
-    }
-
-    fn short(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let rough = self.rough();
-        if let Some(Trial { fit, .. }) = self.fits.last_mut() {
-            self.evaluations.linearize += fit.step(scene, &self.bounds, &rough);
-        }
-        self.begun_or_not();
-    }
-
-    /// After some passes of a fit the next begins.
-    fn begun_or_not(&mut self) {
-        let short = match (self.phase, self.kind) {
-            (Phase::Known, _) => 1,
-            (_, Kind::Index) => VARIATION_SHORT,
-            _ => SHORT,
-        };
-        let last = self.fits.last();
-        if last.is_some_and(|Trial { fit, .. }| fit.stop.is_none() && fit.passes < short) {
-            self.task = Task::Short;
-            return;
-        }
-        let mut rest = self.fits.as_mut_slice();
-        while let [others @ .., new] = rest
-            && let Some(before) = others.last_mut()
-            && minima::less(new.fit.at.cost, before.fit.at.cost)
-        {
-            core::mem::swap(before, new);
-            rest = others;
-        }
-        self.place += 1;
-        self.task = Task::Begin;
-        if self.place >= self.levelled {
-            (self.place, self.task) = (0, Task::Judge);
-        }
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn judge(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let Some(Trial { fit, .. }) = self.fits.get(self.place as usize) else {
-            self.task = Task::Choose;
-            return;
-        };
-        if self.phase != Phase::Known {
-            self.ends.note_rival(scene, fit);
-        }
-        if self.place == 0 && self.kind != Kind::Index || self.ends.is_near(fit.at.cost, R::of(NEAR)) {
-            (self.until, self.task) = (0, Task::Converge);
-        } else {
-            self.place += 1;
-        }
-    }
-
-    #[cfg_attr(target_os = "none", inline(never))]
-    fn converge(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let rough = self.rough();
-        if let Some(Trial { fit, start }) = self.fits.get_mut(self.place as usize) {
-            if fit.stop.is_some() || fit.passes >= self.until {
-                if self.ends.is_over(fit, *start, self.round) {
-                    self.place += 1;
-                    self.task = Task::Judge;
-                    return;
-                }
-                self.until = fit.passes + 2;
-            }
-            self.evaluations.linearize += fit.step(scene, &self.bounds, &rough);
-        }
-    }
-
     fn last(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
         let best = &mut self.ends.best;
         if best.stop.is_none() {
@@ -578,83 +328,6 @@ impl<R: Real, const P: usize> Search<R, P> {
     }
 }
 
-impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R, P, M, F> {
-    fn shape(&self) -> [u32; 3] {
-        let capacities = (P as u32) << 24 | (F as u32 & 0xff) << 16 | M as u32 & 0xffff;
-        [3, size_of::<R>() as u32, capacities]
-    }
-    fn fields(&mut self, tape: &mut Tape<'_>) {
-        use Task::{Begin, Choose, Converge, Judge, Last, Level, Propose, Short, Weigh};
-        let phases = [
-            Phase::Known,
-            Phase::Rounds,
-            Phase::Variations,
-            Phase::Last,
-            Phase::Ended,
-        ];
-        tape.one_of(&mut self.phase, &phases);
-        let tasks = [Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last];
-        tape.one_of(&mut self.task, &tasks);
-        let bands: [Kind; BANDS as usize] = core::array::from_fn(|band| Kind::Band(band as u32));
-        let mut band = bands.contains(&self.kind);
-        tape.flag(&mut band);
-        if band {
-            tape.one_of(&mut self.kind, &bands);
-        } else {
-            tape.one_of(&mut self.kind, &[Kind::Everywhere, Kind::Index, Kind::Slopes]);
-        }
-        tape.flag(&mut self.unsettled);
-        tape.u64(&mut self.seed);
-        for number in [
-            &mut self.candidates,
-            &mut self.round,
-            &mut self.made,
-            &mut self.known,
-            &mut self.again,
-            &mut self.group,
-            &mut self.next,
-            &mut self.end,
-            &mut self.levelled,
-            &mut self.place,
-            &mut self.until,
-            &mut self.evaluations.cost,
-            &mut self.evaluations.linearize,
-            &mut self.options.max_passes,
-            &mut self.candidate.passes,
-        ] {
-            tape.u32(number);
-        }
-        tape.one_of(&mut self.candidate.waits, &[Waits::No, Waits::Weights, Waits::Fading]);
-        for numbers in [
-            &mut self.bounds.lower,
-            &mut self.bounds.upper,
-            &mut self.centre.0,
-            &mut self.candidate.x,
-        ] {
-            tape.reals(numbers);
-        }
-        for number in [
-            &mut self.options.cost_tolerance,
-            &mut self.options.step_tolerance,
-            &mut self.options.damping,
-            &mut self.centre.1,
-            &mut self.candidate.rank,
-        ] {
-            tape.reals(core::slice::from_mut(number));
-        }
-        tape.list(&mut self.starts, &Minimum::EMPTY, |tape, start| start.fields(tape));
-        let empty = Trial {
-            fit: Fit::nowhere(),
-            start: 0,
-        };
-        tape.list(&mut self.fits, &empty, |tape, trial| {
-            trial.fit.fields(tape);
-            tape.u64(&mut trial.start);
-        });
-        self.ends.fields(tape);
-    }
-}
-
 /// Candidate `index`.
 fn at<R, const P: usize>(x: [R; P], cost: R, index: u64) -> Minimum<R, P> {
     Minimum {
@@ -662,16 +335,5 @@ fn at<R, const P: usize>(x: [R; P], cost: R, index: u64) -> Minimum<R, P> {
         cost,
         hits: 0,
         first_start: index,
-    }
-}
-
-/// Which candidates a round has: from everywhere at first, and then from one part of the range of slopes after the other.
-fn kind(round: u32) -> Kind {
-    match round.checked_sub(ROUNDS) {
-        Some(band) if band % (2 * BANDS) < BANDS || band < CYCLES * BANDS => {
-            // The first of them are spread over the range.
-            Kind::Band(band * 5 % BANDS)
-        }
-        _ => Kind::Everywhere,
     }
 }

@@ -13,7 +13,7 @@ use crate::analysis::proof::{provable, prove};
 use crate::engine::certify::Certificate;
 use crate::engine::{self, FitOptions, Until, robust};
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, ReadOptions, measurement};
 use crate::interrupt;
 use crate::number::shortest;
 use crate::options::SearchArguments;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     for subject in &subjects {
-        left_out::note(std::slice::from_ref(&subject.measurement), streams.errors);
+        measurement::note(std::slice::from_ref(&subject.measurement), streams.errors);
     }
     Ok(ended)
 }

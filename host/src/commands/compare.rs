@@ -7,7 +7,7 @@ use clap::Args;
 use crate::analysis::choose::choose;
 use crate::engine::{FitOptions, Model};
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, ReadOptions, measurement};
 use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::models;
 use crate::plot::picture;
@@ -62,6 +62,6 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         picture::save(plot, &svg(&measurement, &choice))?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(&[measurement], streams.errors);
+    measurement::note(&[measurement], streams.errors);
     Ok(())
 }

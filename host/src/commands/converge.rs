@@ -10,7 +10,7 @@ use crate::analysis::converge::{METHODS, study};
 use crate::analysis::paper_sets::{Subject, paper_scans};
 use crate::engine::FitOptions;
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, ReadOptions, measurement};
 use crate::options::all_parameters;
 use crate::output::{OutputArguments, TableFormat, deliver};
 use crate::parameters::model;
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         picture::save(picture, &write::svg(&studies, arguments.seeds))?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(measurement.as_slice(), streams.errors);
+    measurement::note(measurement.as_slice(), streams.errors);
     Ok(())
 }
 

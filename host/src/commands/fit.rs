@@ -16,7 +16,7 @@ use crate::analysis::proof::{provable, prove};
 use crate::engine::certify::Certificate;
 use crate::engine::{FitOptions, Material, Method, Until, robust};
 use crate::error::Error;
-use crate::input::{self, Measurement, ReadOptions, left_out};
+use crate::input::{self, Measurement, ReadOptions, measurement};
 use crate::interrupt;
 use crate::options::SearchArguments;
 use crate::output::{OutputArguments, TableFormat, deliver};
@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         )?;
     }
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(&measurements, streams.errors);
+    measurement::note(&measurements, streams.errors);
     Ok(ended)
 }
 

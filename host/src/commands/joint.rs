@@ -17,7 +17,7 @@ use crate::document;
 use crate::engine::joint::SCANS;
 use crate::engine::{FitOptions, Model};
 use crate::error::{Error, shown};
-use crate::input::{self, Measurement, ReadOptions, left_out};
+use crate::input::{self, Measurement, ReadOptions, measurement};
 use crate::number::{four, two};
 use crate::options::SearchArguments;
 use crate::output::{Format, OutputArguments, deliver};
@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         Format::Json => json(&fits, best, &measurements),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(&measurements, streams.errors);
+    measurement::note(&measurements, streams.errors);
     Ok(())
 }
 
@@ -125,7 +125,7 @@ fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error
         Format::Json => repeats::json(&found),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(&measurements, streams.errors);
+    measurement::note(&measurements, streams.errors);
     Ok(())
 }
 

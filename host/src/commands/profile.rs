@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::analysis::profile::findings::{Asked, find};
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, ReadOptions, measurement};
 use crate::options::SearchArguments;
 use crate::output::{Format, OutputArguments, deliver};
 use crate::plot::picture;
@@ -69,6 +69,6 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         picture::save(picture, &svg(&findings))?;
     }
     deliver(written.as_bytes(), target.as_ref(), streams.output)?;
-    left_out::note(&[measurement], streams.errors);
+    measurement::note(&[measurement], streams.errors);
     Ok(())
 }

@@ -11,7 +11,7 @@ use super::prove::{ProofArguments, part};
 use super::subject::{self, Subject};
 use crate::analysis::proof::provable;
 use crate::error::Error;
-use crate::input::{ReadOptions, left_out};
+use crate::input::{ReadOptions, measurement};
 use crate::options::SearchArguments;
 use crate::output;
 use crate::page::provenance;
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     let page = html::page(&sections, &provenance::command(given));
     output::deliver(page.as_bytes(), target.as_ref(), streams.output)?;
     for subject in &subjects {
-        left_out::note(std::slice::from_ref(&subject.measurement), streams.errors);
+        measurement::note(std::slice::from_ref(&subject.measurement), streams.errors);
     }
     Ok(())
 }

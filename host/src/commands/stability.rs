@@ -12,7 +12,7 @@ use crate::analysis::stability::built_in;
 use crate::document::json;
 use crate::engine::FitOptions;
 use crate::error::Error;
-use crate::input::{self, ReadOptions, left_out};
+use crate::input::{self, ReadOptions, measurement};
 use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::model;
 use crate::result::json::provenance::{Provenance, provenance};
@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
                     provenance,
                 }),
             };
-            left_out::note(std::slice::from_ref(&measurement), streams.errors);
+            measurement::note(std::slice::from_ref(&measurement), streams.errors);
             text
         }
     };

@@ -2,12 +2,9 @@
 
 use serde::Serialize;
 
-use super::facts;
+use super::kind::Kind;
 use super::options::ReadOptions;
-use super::raw::RawScan;
 use super::source::Source;
-use super::units::Angles;
-use crate::error::Error;
 use crate::plain::some_of;
 
 /// What a reader understood, beside the numbers.
@@ -69,17 +66,6 @@ impl Default for About {
     }
 }
 
-/// What kind of file it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A table of columns, whose units and signs are anybody's.
-    Table,
-    /// A matrix, the same.
-    Matrix,
-    /// A format that fixes units and signs.
-    Own,
-}
-
 /// A column that is used.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Used {
@@ -103,41 +89,4 @@ pub enum ThetaI {
         /// The names of the columns, for a message.
         names: Vec<String>,
     },
-}
-
-/// Gives the rows of a scan their angle of incidence, if the table has none: from the option, a remark, or the file's name.
-///
-/// # Errors
-/// None of these has it, or the option gives what the table has too.
-pub fn give_theta_i(file: &str, scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
-    let given = options.theta_i.first().copied();
-    let (named, names) = match (&scan.about.theta_i, given) {
-        (ThetaI::Column, None) => return Ok(()),
-        (ThetaI::Column, Some(_)) => {
-            return Err(
-                Error::new("--theta-i gives an angle of incidence, and the file has its own")
-                    .help("leave one out: --ignore takes the number or name of a column"),
-            );
-        }
-        (ThetaI::Missing { remark, names }, _) => (*remark, names),
-    };
-    let (degrees, from) = match (given, named) {
-        (Some(degrees), _) => (degrees, "--theta-i"),
-        (None, Some(degrees)) => (degrees, "a remark"),
-        (None, None) => match facts::theta_i_of_name(file)? {
-            Some(degrees) => (degrees, "the name of the file"),
-            None => return Err(facts::missing_theta_i(names)),
-        },
-    };
-    let angle = match options.angles.unwrap_or(scan.angles) {
-        Angles::Deg => degrees,
-        Angles::Rad => degrees.to_radians(),
-    };
-    scan.rows.iter_mut().for_each(|row| row.theta_i = angle);
-    scan.about.theta_i = ThetaI::Column;
-    scan.about.one_angle = true;
-    scan.about
-        .notes
-        .push(format!("theta_i is {degrees} degrees, from {from}"));
-    Ok(())
 }

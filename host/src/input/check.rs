@@ -3,12 +3,13 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-use super::Measurement;
-use super::about::Kind;
 use super::format::Format;
+use super::kind::Kind;
 use super::left_out::Reason;
-use super::options::{ReadAs, ReadOptions, Weights};
+use super::measurement::Measurement;
+use super::options::{ReadOptions, Weights};
 use super::raw::{Places, RawScan, Row, Weight};
+use super::read_as::ReadAs;
 use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight::{self, Deviation};

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Serialize, Serializer};
 
-use super::formats;
 use super::options::ReadOptions;
 use super::raw::RawScan;
 use crate::error::Error;
@@ -67,29 +66,5 @@ impl fmt::Debug for Format {
 impl Serialize for Format {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name)
-    }
-}
-
-impl<'de> Deserialize<'de> for Format {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let name = String::deserialize(from)?;
-        let known = all().iter().find(|format| format.name == name);
-        known.copied().ok_or_else(|| serde::de::Error::custom("no such format"))
-    }
-}
-
-/// All formats, in the order in which they are tried.
-pub fn all() -> &'static [Format] {
-    &formats::ALL
-}
-
-#[cfg(feature = "cli")]
-impl clap::ValueEnum for Format {
-    fn value_variants<'a>() -> &'a [Format] {
-        all()
-    }
-
-    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
-        Some(clap::builder::PossibleValue::new(self.name).help(self.about))
     }
 }

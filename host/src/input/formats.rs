@@ -25,10 +25,10 @@ use super::format::{Format, Reader};
 use super::options::ReadOptions;
 use super::raw::RawScan;
 use super::{bytes, table};
-use crate::error::Error;
+use crate::error::{Error, shown};
 
 /// All formats in the order in which they are tried; a table is what is left, and comes last.
-pub static ALL: [Format; 15] = [
+static ALL: [Format; 15] = [
     merl::FORMAT,
     rgl::FORMAT,
     ssdd::FORMAT,
@@ -46,6 +46,22 @@ pub static ALL: [Format; 15] = [
     table::FORMAT,
 ];
 
+/// All formats, in the order in which they are tried.
+pub fn all() -> &'static [Format] {
+    &ALL
+}
+
+/// The format of a name, if one is asked for.
+fn named(name: Option<&str>) -> Result<Option<Format>, Error> {
+    let Some(name) = name else { return Ok(None) };
+    let known = ALL.iter().find(|format| format.name == name);
+    known.copied().map(Some).ok_or_else(|| {
+        let names: Vec<&str> = ALL.iter().map(|format| format.name).collect();
+        Error::new(format!("there is no format '{}'", shown(name)))
+            .help(format!("--input-format takes {}", names.join(", ")))
+    })
+}
+
 /// The scans in a file, as they stand there, and its format.
 ///
 /// # Errors
@@ -61,7 +77,7 @@ pub fn scans(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>
 }
 
 fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
-    let asked = options.input_format;
+    let asked = named(options.input_format.as_deref())?;
     for format in ALL {
         if let Reader::Bytes { is, read } = format.reader
             && (asked == Some(format) || asked.is_none() && is(file))

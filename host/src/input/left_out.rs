@@ -1,11 +1,9 @@
 //! What a scan had and the fit does not see: why, and how many at which angle of incidence.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 
 use serde::Serialize;
 
-use super::Measurement;
 use crate::number::shortest;
 
 /// Why a row was left out.
@@ -124,18 +122,4 @@ pub fn summary(list: &[LeftOut]) -> Option<String> {
     let reasons: Vec<String> = reasons.collect();
     let samples = if total(list) == 1 { "sample" } else { "samples" };
     Some(format!("{} {samples}: {}", total(list), reasons.join("; ")))
-}
-
-/// Says of each scan what was left out of it, and what may be wrong with it.
-pub fn note(measurements: &[Measurement], to: &mut dyn Write) {
-    for measurement in measurements {
-        if let Some(summary) = summary(&measurement.left_out) {
-            let (label, kept) = (measurement.label(), measurement.samples.len());
-            // If even standard error is closed, the result says it too.
-            let _ = writeln!(to, "{label}: kept {kept}, left out {summary}");
-        }
-        for doubt in &measurement.about.doubts {
-            let _ = writeln!(to, "{}: {doubt}", measurement.label());
-        }
-    }
 }

@@ -2,12 +2,9 @@
 
 mod parse;
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 
-use super::about::Kind;
-use super::format::Format;
+use super::kind::Kind;
 use super::part::Part;
 use super::units::{Angles, Forward, Polarisation, Quantity, ValueUnit, WavelengthUnit};
 use crate::error::Error;
@@ -21,8 +18,8 @@ use crate::error::Error;
 #[serde(default, deny_unknown_fields, rename_all(deserialize = "kebab-case"))]
 pub struct ReadOptions {
     /// Format of the files [default: known by their content]
-    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "FORMAT"))]
-    pub input_format: Option<Format>,
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FORMAT"))]
+    pub input_format: Option<String>,
     /// Scans to take, by the name of their column, wavelength or polarisation [default: all]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME,...", value_delimiter = ','))]
     pub column: Vec<String>,
@@ -156,8 +153,8 @@ impl ReadOptions {
     /// Refuses options that only a table has a use for.
     ///
     /// # Errors
-    /// One of them is given, and the file is of another format, which is named in the message.
-    pub fn refuse_for(&self, kind: Kind, format: Format) -> Result<(), Error> {
+    /// One of them is given, and the file is of another format, whose title is in the message.
+    pub fn refuse_for(&self, kind: Kind, title: &str) -> Result<(), Error> {
         let given = [
             ("--columns", !self.columns.is_empty()),
             ("--split", !self.split.is_empty()),
@@ -170,8 +167,7 @@ impl ReadOptions {
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((option, _)) if kind != Kind::Table => Err(Error::new(format!(
-                "{option} is for tables with columns, and this is {}",
-                format.title
+                "{option} is for tables with columns, and this is {title}"
             ))
             .help(format!("leave {option} out, or call brdfit for this file alone"))),
             _ => Ok(()),
@@ -189,40 +185,4 @@ pub enum Weights {
     File,
     /// All samples count the same
     Equal,
-}
-
-/// What the numbers of a scan were taken for.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ReadAs {
-    /// The file's format.
-    pub format: Format,
-    /// The unit of its angles.
-    pub angles: Angles,
-    /// What its values are.
-    pub quantity: Quantity,
-    /// The sign of theta_s towards the specular peak.
-    pub forward: Forward,
-    /// True if the samples have different weights.
-    pub weighted: bool,
-}
-
-impl fmt::Display for ReadAs {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let angles = match self.angles {
-            Angles::Deg => "degrees",
-            Angles::Rad => "radians",
-        };
-        let (sign, weights) = (
-            match self.forward {
-                Forward::Positive => '+',
-                Forward::Negative => '-',
-            },
-            if self.weighted { ", weighted" } else { "" },
-        );
-        let (format, quantity) = (self.format.title, self.quantity.title());
-        write!(
-            f,
-            "{format}: {quantity} over {angles}, specular peak at theta_s = {sign}theta_i{weights}"
-        )
-    }
 }

@@ -2,9 +2,9 @@
 
 use brdfit_core::real::Real;
 
-use super::azimuth;
 use super::facts::OWN;
-use super::{Measurement, label};
+use super::measurement::{Measurement, label};
+use super::units::azimuth;
 use crate::document::write_row;
 use crate::number::shortest;
 

@@ -2,24 +2,11 @@
 
 use std::collections::HashMap;
 
-use super::columns::Value;
+use super::columns::{Value, WeightKind};
 use super::head::{Head, plain};
 use super::options::ReadOptions;
 use super::unit::Unit;
 use crate::error::{Error, shown};
-
-/// What a column says of the uncertainty of another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum WeightKind {
-    /// Standard deviation in the unit of the value, times a coverage factor.
-    Sigma(f64),
-    /// Standard deviation over the value, times a coverage factor.
-    RelativeSigma(f64),
-    /// The same in percent.
-    PercentSigma(f64),
-    /// Factor of the residual.
-    Factor,
-}
 
 /// Names of a standard deviation; what contains another stands first.
 const SIGMA: [&str; 21] = [

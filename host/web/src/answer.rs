@@ -12,7 +12,7 @@ use brdfit::error::Error;
 use brdfit::export::form;
 use brdfit::export::model::Model as Exported;
 use brdfit::input::own;
-use brdfit::input::{self, Measurement, format};
+use brdfit::input::{self, Measurement, formats};
 use brdfit::page::html;
 use brdfit::page::section::Section;
 use brdfit::parameters::{model, models};
@@ -122,7 +122,7 @@ fn about() -> Value {
             "parameters": (0..model.parameters.len()).map(parameter).collect::<Vec<_>>(),
         })
     };
-    let formats = format::all().iter();
+    let formats = formats::all().iter();
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "models": MODELS.iter().map(model).collect::<Vec<_>>(),

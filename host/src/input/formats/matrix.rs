@@ -1,9 +1,10 @@
 //! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
 
 use crate::error::{Error, shown};
-use crate::input::about::{Kind, ThetaI};
+use crate::input::about::ThetaI;
 use crate::input::facts;
 use crate::input::format::{Format, Reader};
+use crate::input::kind::Kind;
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
 use crate::input::rows::{self, Decimal, number_in};

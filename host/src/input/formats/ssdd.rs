@@ -2,15 +2,17 @@
 //!
 //! Source: "Surface scattering distribution data (SSDD) file format", version 0.2, in libbsdf.
 
-use super::grid::{self, Azimuths};
+mod block;
+mod lines;
+
 use super::words::Words;
 use crate::error::{Error, shown};
-use crate::input::direction;
 use crate::input::format::{Format, Reader};
 use crate::input::left_out::{Counts, Reason};
 use crate::input::options::ReadOptions;
-use crate::input::raw::{RawScan, Row, Weight};
-use crate::input::units::Angles;
+use crate::input::raw::RawScan;
+use block::{Block, Values, brdf, colours};
+use lines::Lines;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -23,7 +25,7 @@ pub const FORMAT: Format = Format {
 /// True if the first keyword is VERSION, and DATA_TYPE follows.
 fn is(file: &[u8]) -> bool {
     const HEADER: usize = 4096;
-    let mut lines = Lines { rest: file, line: 0 };
+    let mut lines = Lines::new(file);
     let mut first = None;
     while let Some((_, line)) = lines.next() {
         let keyword = line.split_whitespace().next().unwrap_or("");
@@ -39,51 +41,6 @@ fn is(file: &[u8]) -> bool {
     false
 }
 
-/// Lines of text, between which binary numbers may stand; remarks are blank.
-struct Lines<'a> {
-    rest: &'a [u8],
-    line: u64,
-}
-
-impl<'a> Lines<'a> {
-    fn next(&mut self) -> Option<(u64, String)> {
-        if self.rest.is_empty() {
-            return None;
-        }
-        let end = memchr::memchr(b'\n', self.rest).unwrap_or(self.rest.len());
-        let line = String::from_utf8_lossy(&self.rest[..end]);
-        let line = line.trim_start_matches('\u{feff}').trim();
-        self.rest = &self.rest[(end + 1).min(self.rest.len())..];
-        self.line += 1;
-        Some((
-            self.line,
-            if line.starts_with('#') {
-                String::new()
-            } else {
-                line.to_string()
-            },
-        ))
-    }
-
-    /// So many bytes; none if there are fewer.
-    fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(count)?;
-        self.rest = rest;
-        Some(taken)
-    }
-}
-
-/// The keywords of a block of data.
-#[derive(Default)]
-struct Block {
-    kind: String,
-    line: u64,
-    colours: String,
-    wavelengths: Vec<f64>,
-    parameters: String,
-    lists: [Vec<f64>; 5],
-}
-
 /// One scan for each colour or wavelength, and for each azimuth of incidence if there are several.
 ///
 /// # Errors
@@ -92,7 +49,7 @@ fn read(file: &[u8], _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     if !is(file) {
         return Err(Error::new("this is no SSDD file").help("it begins with VERSION, and DATA_TYPE follows"));
     }
-    let mut lines = Lines { rest: file, line: 0 };
+    let mut lines = Lines::new(file);
     let mut block = Block::default();
     let (mut scans, mut others, mut kinds) = (Vec::new(), Counts::default(), Vec::new());
     while let Some((number, line)) = lines.next() {
@@ -166,29 +123,6 @@ fn list(keyword: &str, value: &str, line: u64) -> Result<Vec<f64>, Error> {
     value.split_whitespace().map(number).collect()
 }
 
-/// Names of the colours, one for each value of a direction.
-fn colours(block: &Block) -> Result<Vec<Option<String>>, Error> {
-    let letters = |names: &str| names.chars().map(|name| Some(name.to_string())).collect();
-    match block.colours.as_str() {
-        "monochrome" => Ok(vec![None]),
-        "rgb" => Ok(letters("RGB")),
-        "xyz" => Ok(letters("XYZ")),
-        "spectrum" if !block.wavelengths.is_empty() => {
-            let name = |wavelength: &f64| Some(format!("{wavelength} nm"));
-            Ok(block.wavelengths.iter().map(name).collect())
-        }
-        "spectrum" => Err(Error::new("COLOR_MODEL is spectrum, and there is no WAVELENGTH_LIST")
-            .at_line(block.line)
-            .help("give the wavelengths in nm")),
-        other => Err(Error::new(format!("COLOR_MODEL is '{}'", shown(other)))
-            .at_line(block.line)
-            .help("this reads monochrome, rgb, xyz or spectrum")),
-    }
-}
-
-/// Values with their lines, of which binary ones have none.
-type Values = Vec<(u64, f64)>;
-
 /// The values of a block, which stand below its line DATA.
 fn values(lines: &mut Lines, block: &Block, mode: &str, line: u64) -> Result<Values, Error> {
     let cut_off = |have: usize, want: usize| {
@@ -234,106 +168,10 @@ fn values(lines: &mut Lines, block: &Block, mode: &str, line: u64) -> Result<Val
     }
 }
 
-/// What the lists of a block are angles of.
-#[derive(Clone, Copy, PartialEq)]
-enum Parameters {
-    Spherical,
-    Specular,
-    HalfDifference,
-}
-
-/// The scans in a block.
-fn brdf(block: &Block, values: &Values) -> Result<Vec<RawScan>, Error> {
-    let parameters = match block.parameters.as_str() {
-        "spherical_coordinate_system" => Parameters::Spherical,
-        "specular_coordinate_system" => Parameters::Specular,
-        "half_difference_coordinate_system" => Parameters::HalfDifference,
-        other => {
-            return Err(Error::new(format!("PARAM_TYPE is '{}'", shown(other)))
-                .at_line(block.line)
-                .help(
-                    "this reads spherical, specular or half_difference_coordinate_system: export it as one of these",
-                ));
-        }
-    };
-    let [first, second, third, fourth, offsets] = &block.lists;
-    for (place, list) in [(0, first), (2, third), (3, fourth)] {
-        if list.is_empty() {
-            return Err(Error::new(format!("there is no PARAM{place}_LIST"))
-                .at_line(block.line)
-                .help("a BRDF needs PARAM0_LIST, PARAM2_LIST and PARAM3_LIST"));
-        }
-    }
-    if !offsets.is_empty() && offsets.len() != first.len() {
-        return Err(Error::new("PARAM4_LIST and PARAM0_LIST differ in length")
-            .at_line(block.line)
-            .help("give one offset for each angle of incidence"));
-    }
-    let colours = colours(block)?;
-    // Without it the material is isotropic.
-    let around = if second.is_empty() { &[0.0][..] } else { second };
-    let azimuths = Azimuths::new(fourth.clone());
-    let mut scans = Vec::new();
-    for &azimuth in around {
-        for colour in &colours {
-            let turned = (around.len() > 1).then(|| format!("azimuth {azimuth}"));
-            scans.push(RawScan::new(
-                turned.into_iter().chain(colour.clone()).collect(),
-                Angles::Deg,
-            ));
-        }
-    }
-    for (a, &one) in first.iter().enumerate() {
-        for (b, &two) in around.iter().enumerate() {
-            for (c, &three) in third.iter().enumerate() {
-                for colour in 0..colours.len() {
-                    let place = |d: usize| {
-                        let node = a + first.len() * (b + around.len() * (c + third.len() * d));
-                        node * colours.len() + colour
-                    };
-                    let ring: Vec<f64> = (0..fourth.len()).map(|d| values[place(d)].1).collect();
-                    for (d, &four) in fourth.iter().enumerate() {
-                        if azimuths.repeats(three, d, &ring) {
-                            continue;
-                        }
-                        let offset = offsets.get(a).copied().unwrap_or(0.0);
-                        let (theta_i, theta_s, delta_phi) = directions(parameters, [one, two, three, four], offset);
-                        let row = Row {
-                            theta_i,
-                            theta_s,
-                            delta_phi,
-                            value: ring[d],
-                            weight: Weight::Unknown,
-                            line: values[place(d)].0,
-                        };
-                        grid::add(&mut scans[b * colours.len() + colour], row);
-                    }
-                }
-            }
-        }
-    }
-    Ok(scans)
-}
-
-/// Angle of incidence, scattering angle and azimuth from incidence of a node, degrees.
-fn directions(parameters: Parameters, [one, two, three, four]: [f64; 4], offset: f64) -> (f64, f64, Option<f64>) {
-    match parameters {
-        Parameters::Spherical => (one, three, Some(four - two)),
-        Parameters::Specular => {
-            // Azimuth 0 leads from the specular ray to the normal.
-            let (theta_s, delta_phi) = direction::of_specular(one + offset, three, four);
-            (one, theta_s, delta_phi)
-        }
-        Parameters::HalfDifference => {
-            let (theta_i, theta_s, delta_phi) = direction::of_half_angles(one, three, four);
-            (theta_i, theta_s, Some(delta_phi))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::raw::Row;
 
     fn read(file: &[u8]) -> Result<Vec<RawScan>, Error> {
         super::read(file, &ReadOptions::default())

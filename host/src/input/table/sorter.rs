@@ -1,0 +1,281 @@
+//! Sorts the rows of a table into scans.
+
+use std::collections::HashMap;
+
+use super::about;
+use super::unused::Seen;
+use crate::error::{Error, shown};
+use crate::input::columns::{Azimuth, Columns, Value, WeightKind};
+use crate::input::facts::Facts;
+use crate::input::options::ReadOptions;
+use crate::input::raw::{Places, RawScan, Row, Weight};
+use crate::input::role::Role;
+use crate::input::rows::{self, Decimal};
+use crate::input::unit::Unit;
+use crate::input::units::WavelengthUnit;
+use crate::input::weight::Deviation;
+use crate::input::{channel, polarisation, wavelength};
+
+/// A scan with what tells it from others.
+pub struct Scan {
+    /// Its rows.
+    pub raw: RawScan,
+    /// What stands in the columns that make scans.
+    pub splits: Vec<String>,
+    /// Its polarisation, if it is known.
+    pub polarisation: Option<String>,
+}
+
+/// Sorts rows into scans.
+pub struct Sorter<'a> {
+    columns: &'a Columns,
+    options: &'a ReadOptions,
+    facts: &'a Facts,
+    /// What a remark says, degrees.
+    theta_i: Option<f64>,
+    decimal: Decimal,
+    /// Each group of rows has one scan a column of values.
+    pub scans: Vec<Scan>,
+    /// Groups by what stands in the rows, and by what that means.
+    by_text: HashMap<String, usize>,
+    by_name: HashMap<Vec<String>, usize>,
+    last: Option<(String, usize)>,
+    key: String,
+    /// The columns that are not used.
+    pub unused: Vec<Seen>,
+    /// The column of the unit and what stands in it, if there is one.
+    pub unit: Option<(usize, String)>,
+}
+
+impl<'a> Sorter<'a> {
+    /// Has no row yet; `theta_i` is what a remark says, degrees.
+    pub fn new(columns: &'a Columns, facts: &'a Facts, theta_i: Option<f64>, options: &'a ReadOptions) -> Self {
+        let seen = |&(column, role): &(usize, Role)| Seen::new(column, &columns.heads[column].text, role);
+        Sorter {
+            columns,
+            options,
+            facts,
+            theta_i,
+            decimal: Decimal::Unknown,
+            scans: Vec::new(),
+            by_text: HashMap::new(),
+            by_name: HashMap::new(),
+            last: None,
+            key: String::new(),
+            unused: columns.unused.iter().map(seen).collect(),
+            unit: None,
+        }
+    }
+
+    /// Takes one row.
+    ///
+    /// # Errors
+    /// A cell is no number, or the unit is another than before.
+    pub fn row(&mut self, line: u64, cells: &[&str]) -> Result<(), Error> {
+        for seen in &mut self.unused {
+            seen.see(cells[seen.column]);
+        }
+        if let Some(column) = self.columns.unit {
+            self.see_unit(column, cells[column])?;
+        }
+        let group = self.group(cells)?;
+        let columns = self.columns;
+        let sigma_ln = columns.sigma_ln.map(|column| self.number(cells, column)).transpose()?;
+        let angles = Angles {
+            theta_i: match columns.theta_i {
+                Some(column) => self.number(cells, column)?,
+                None => f64::NAN,
+            },
+            theta_s: self.number(cells, columns.theta_s)?,
+            delta_phi: match columns.azimuth {
+                None => None,
+                Some(Azimuth::Difference(column)) => Some(self.number(cells, column)?),
+                Some(Azimuth::Of(phi_s, None)) => Some(self.number(cells, phi_s)?),
+                Some(Azimuth::Of(phi_s, Some(phi_i))) => Some(self.number(cells, phi_s)? - self.number(cells, phi_i)?),
+            },
+        };
+        for (place, value) in columns.values.iter().enumerate() {
+            let row = Row {
+                theta_i: angles.theta_i,
+                theta_s: angles.theta_s,
+                delta_phi: angles.delta_phi,
+                value: self.number(cells, value.column)?,
+                weight: self.weight(cells, value)?,
+                line,
+            };
+            let raw = &mut self.scans[group * columns.values.len() + place].raw;
+            raw.about.sigma_ln = sigma_ln;
+            raw.rows.push(row);
+        }
+        Ok(())
+    }
+
+    fn number(&mut self, cells: &[&str], column: usize) -> Result<f64, Error> {
+        rows::number_in(cells, column, &mut self.decimal)
+    }
+
+    fn weight(&mut self, cells: &[&str], value: &Value) -> Result<Weight, Error> {
+        let Some((column, kind)) = value.weight else {
+            return Ok(Weight::Unknown);
+        };
+        let x = self.number(cells, column)?;
+        Ok(match kind {
+            WeightKind::Sigma(coverage) => Weight::Sigma(x / coverage),
+            WeightKind::RelativeSigma(coverage) => Weight::RelativeSigma(x / coverage),
+            WeightKind::PercentSigma(coverage) => Weight::RelativeSigma(x / coverage / 100.0),
+            WeightKind::Factor => match self.columns.own_sigma {
+                Some([absolute, relative]) if !cells[absolute].is_empty() => Weight::Own(
+                    x,
+                    Deviation {
+                        absolute: self.number(cells, absolute)?,
+                        relative: self.number(cells, relative)?,
+                    },
+                ),
+                _ => Weight::Factor(x),
+            },
+        })
+    }
+
+    /// The group that a row belongs to, by its wavelength, polarisation and samples.
+    fn group(&mut self, cells: &[&str]) -> Result<usize, Error> {
+        let columns = self.columns;
+        let mut telling = columns
+            .splits
+            .iter()
+            .chain(&columns.polarisation)
+            .chain(&columns.wavelength)
+            .peekable();
+        // Most tables have one group.
+        if telling.peek().is_none() && !self.by_text.is_empty() {
+            return Ok(0);
+        }
+        self.key.clear();
+        for &column in telling {
+            self.key.push_str(cells[column]);
+            self.key.push('\u{1}');
+        }
+        if let Some((key, group)) = &self.last
+            && *key == self.key
+        {
+            return Ok(*group);
+        }
+        let group = match self.by_text.get(&self.key) {
+            Some(&group) => group,
+            None => {
+                let group = self.new_group(cells)?;
+                self.by_text.insert(self.key.clone(), group);
+                group
+            }
+        };
+        self.last = Some((self.key.clone(), group));
+        Ok(group)
+    }
+
+    /// A group whose text is new; 550 and 550.0 are the same one.
+    fn new_group(&mut self, cells: &[&str]) -> Result<usize, Error> {
+        let columns = self.columns;
+        let wavelength = match columns.wavelength {
+            Some(column) => Some(self.wavelength(cells, column)?),
+            // A channel may say more of itself.
+            None => self.facts.wavelength.map(wavelength::name),
+        };
+        let polarisation = match columns.polarisation {
+            Some(column) => Some(polarisation::name(cells[column])),
+            None => self.facts.polarisation.as_deref().map(polarisation::name),
+        };
+        let splits: Vec<String> = columns.splits.iter().map(|&column| cells[column].to_string()).collect();
+        let mut name = splits.clone();
+        name.extend([&wavelength, &polarisation].into_iter().flatten().cloned());
+        let groups = self.by_name.len();
+        let group = *self.by_name.entry(name).or_insert(groups);
+        if group == groups {
+            let of_value = |value: &Value| self.scan(value, &splits, &wavelength, &polarisation);
+            let scans: Vec<Scan> = columns.values.iter().map(of_value).collect();
+            self.scans.extend(scans);
+        }
+        Ok(group)
+    }
+
+    /// The wavelength of a row, for people.
+    fn wavelength(&mut self, cells: &[&str], column: usize) -> Result<String, Error> {
+        let Ok(number) = self.number(cells, column) else {
+            // A word, such as the colour of a laser, tells rows apart as well.
+            return Ok(cells[column].to_string());
+        };
+        let head = &self.columns.heads[column];
+        let unit = match self.options.wavelength_unit {
+            Some(WavelengthUnit::Nm) => Some(Unit::Length(1.0)),
+            Some(WavelengthUnit::Um) => Some(Unit::Length(1e3)),
+            Some(WavelengthUnit::M) => Some(Unit::Length(1e9)),
+            Some(WavelengthUnit::Angstrom) => Some(Unit::Length(0.1)),
+            Some(WavelengthUnit::PerCm) => Some(Unit::PerCm),
+            None => match head.plain.as_str() {
+                "wavelengthm" | "lambdam" => Some(Unit::Length(1e9)),
+                "wavenumber" if head.unit.is_none() => Some(Unit::PerCm),
+                _ => head.unit,
+            },
+        };
+        let nanometres = wavelength::nanometres(number, unit).map_err(|error| error.at_column(column as u64 + 1))?;
+        Ok(wavelength::name(nanometres))
+    }
+
+    /// An empty scan of one column of values in one group.
+    fn scan(
+        &self,
+        value: &Value,
+        splits: &[String],
+        wavelength: &Option<String>,
+        polarisation: &Option<String>,
+    ) -> Scan {
+        let columns = self.columns;
+        let place = |column: usize| column as u64 + 1;
+        let head = &columns.heads[value.column];
+        let of_channel = channel::polarisation(head).map(str::to_string);
+        let names = value.name.iter().chain(wavelength).chain(polarisation);
+        Scan {
+            raw: RawScan {
+                quantity: value.quantity,
+                places: Places {
+                    theta_i: columns.theta_i.map(place),
+                    theta_s: Some(place(columns.theta_s)),
+                    phi: columns.azimuth.map(|azimuth| match azimuth {
+                        Azimuth::Difference(column) | Azimuth::Of(column, _) => place(column),
+                    }),
+                    value: Some(place(value.column)),
+                    weight: value.weight.map(|(column, _)| place(column)),
+                },
+                about: about::of(columns, value, self.theta_i, self.facts.own),
+                ..RawScan::new(names.cloned().collect(), columns.angles)
+            },
+            splits: splits.to_vec(),
+            polarisation: polarisation.clone().or(of_channel),
+        }
+    }
+
+    fn see_unit(&mut self, column: usize, cell: &str) -> Result<(), Error> {
+        match &self.unit {
+            None => self.unit = Some((column, cell.to_string())),
+            Some((_, known)) if known == cell => {}
+            Some((_, known)) => {
+                return Err(Error::new(format!(
+                    "the unit is '{}', and was '{}' before",
+                    shown(cell),
+                    shown(known)
+                ))
+                .at_column(column as u64 + 1)
+                .help(format!(
+                    "give all values in one unit, or make scans of the units with --split {}",
+                    column + 1
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The angles of a row, as they stand there.
+struct Angles {
+    theta_i: f64,
+    theta_s: f64,
+    delta_phi: Option<f64>,
+}

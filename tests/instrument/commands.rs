@@ -1,0 +1,147 @@
+//! Joint fits and the commands take what is known, or refuse it.
+
+use super::angles::averaged;
+use super::{PLACE_M, PLACE_N, dielectric, grid, json, noisy, options};
+use brdfit::analysis::bootstrap::Noise;
+use brdfit::engine::{Material, Prior, joint};
+use brdfit::instrument::ENERGY;
+use brdfit_core::geometry::Sample;
+use brdfit_suite::program::{brdfit, fail, succeed, write};
+use tempfile::TempDir;
+
+#[test]
+fn joint_fits_take_part() {
+    let material = Material::paper([0.05, 3.0, 0.0, 0.02, 1.5, 0.0]);
+    let half_angle = 2.15f64.to_radians();
+    let seen = |seed: u64| {
+        let mut samples = grid(&[30.0], 2, 80);
+        for (place, sample) in samples.iter_mut().enumerate() {
+            let noise = 0.01 * Noise::new(seed, place as u64).normal();
+            sample.brdf = (averaged(&material, sample, half_angle) + noise).exp();
+        }
+        samples
+    };
+    let (a, b) = (seen(1), seen(2));
+    let wanted = options(|options| {
+        options.instrument.aperture = half_angle;
+        options.instrument.scale_uncertainty = 0.03;
+        options.instrument.priors[PLACE_N] = Some(Prior { mean: 1.5, sigma: 0.01 });
+        options.instrument.limit = Some(ENERGY);
+    });
+    let shared: Vec<bool> = (0..6).map(|place| place >= PLACE_M).collect();
+    let fitted = joint::fit(&[&a, &b], &shared, &wanted).unwrap();
+    assert!(
+        (fitted.scans[0][PLACE_M] / 0.02 - 1.0).abs() < 0.01,
+        "{:?}",
+        fitted.scans
+    );
+    // A prior of a shared parameter counts once.
+    let error = fitted.errors[0][PLACE_N].expect("n is known");
+    assert!((error / 0.01 - 1.0).abs() < 0.02, "{error}");
+    let rho_d = fitted.errors[0][0].expect("rho_d is known") / fitted.scans[0][0];
+    assert!((0.03..0.04).contains(&rho_d), "{rho_d}");
+}
+
+#[test]
+fn every_command_honours_or_refuses() {
+    let folder = TempDir::new().unwrap();
+    let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 5);
+    let row = |sample: &Sample<f64>| {
+        let (theta_i, theta_s) = (sample.theta_i.to_degrees(), sample.theta_s.to_degrees() + 0.5);
+        format!("{theta_i},{theta_s},{}\n", sample.brdf)
+    };
+    let table: String = samples.iter().map(row).collect();
+    let file = write(
+        &folder,
+        "scan.csv",
+        format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{table}"),
+    );
+    let all = [
+        "--terms",
+        "diffuse,surface",
+        "--prior",
+        "n=1.50+-0.02",
+        "--aperture-half-angle",
+        "0.5",
+        "--scale-uncertainty",
+        "3%",
+        "--conserve-energy",
+    ];
+    let fit = json(&[&["fit", &file, "--fit-offset"], &all[..]].concat());
+    let beside = &fit["provenance"]["instrument"];
+    assert_eq!(beside["priors"]["n"], serde_json::json!([1.5, 0.02]));
+    assert_eq!(
+        (&beside["fit_offset"], &beside["conserve_energy"]),
+        (&true.into(), &true.into())
+    );
+    assert_eq!(
+        (&beside["aperture_half_angle_deg"], &beside["scale_uncertainty"]),
+        (&0.5.into(), &0.03.into())
+    );
+    assert!((fit["offset_deg"].as_f64().unwrap() - 0.5).abs() < 0.3);
+    assert!((fit["parameters"]["n"].as_f64().unwrap() - 1.5).abs() < 0.05);
+    let text = succeed(&[&["fit", &file, "--fit-offset"], &all[..]].concat());
+    for word in ["offset", "priors", "aperture", "scale", "energy"] {
+        assert!(text.contains(&format!("\n  {word} ")), "{word}\n{text}");
+    }
+    // Without any of it nothing is said of it.
+    assert!(json(&["fit", &file])["provenance"]["instrument"].is_null());
+    let page = brdfit(&[&["report", &file, "--fit-offset"], &all[..]].concat(), b"");
+    assert!(
+        page.code == 0
+            && page.output.contains("averaged over a half-angle of 0.5 deg")
+            && page.output.contains("offset_deg")
+    );
+    let profile = json(&[&["profile", &file, "--parameter", "n"], &all[..]].concat());
+    let interval = &profile["parameters"][0]["intervals"][1];
+    let (low, high) = (interval["low"].as_f64().unwrap(), interval["high"].as_f64().unwrap());
+    assert!(1.35 < low && low < high && high < 1.55, "{interval}");
+    let parts = [
+        "--terms",
+        "diffuse,surface",
+        "--prior",
+        "n=1.50+-0.02",
+        "--fit-offset",
+        "--bootstrap",
+        "20",
+    ];
+    let shifted = json(&[&["profile", &file, "--parameter", "m"], &parts[..]].concat());
+    let interval = &shifted["parameters"][0]["intervals"][1];
+    assert!(
+        interval["low"].as_f64() < Some(0.15) && interval["high"].as_f64() > Some(0.15),
+        "{interval}"
+    );
+    let joint = json(&[&["joint", &file, &file, "--share", "m,n"], &all[..]].concat());
+    assert!((joint["scans"][0]["parameters"]["n"].as_f64().unwrap() - 1.5).abs() < 0.05);
+    assert!(fail(&["joint", &file, &file, "--fit-offset"]).contains("--fit-offset"));
+    let out = folder.path().join("results.csv");
+    let ran = brdfit(
+        &[
+            &["batch", &file, "--fit-offset", "--out", out.to_str().unwrap()],
+            &all[..],
+        ]
+        .concat(),
+        b"",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    let results = std::fs::read_to_string(&out).unwrap();
+    let cell = |name: &str| {
+        let mut lines = results.lines();
+        let place = lines.next()?.split(',').position(|head| head == name)?;
+        lines.next()?.split(',').nth(place)?.parse::<f64>().ok()
+    };
+    assert_eq!(cell("offset_deg"), fit["offset_deg"].as_f64());
+    for (bad, word) in [
+        (&["fit", &file, "--fit-offset", "--robust"][..], "--robust"),
+        (
+            &["fit", &file, "--aperture-half-angle", "1", "--precision", "f32"],
+            "f32",
+        ),
+        (&["fit", &file, "--prior", "n=1.5+-0.1", "--fix", "n=1.5"], "fixed"),
+        (&["fit", &file, "--prior", "x=1.5+-0.1"], "x"),
+        (&["profile", &file, "--fit-offset", "--calibrate", "20"], "--fit-offset"),
+    ] {
+        let message = fail(bad);
+        assert!(message.contains(word), "{message}");
+    }
+}

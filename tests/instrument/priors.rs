@@ -1,0 +1,78 @@
+//! Values that are known from elsewhere.
+
+use super::{PLACE_M, PLACE_N, dielectric, fit, grid, noisy, options};
+use brdfit::analysis::bootstrap::Noise;
+use brdfit::engine::{self, FitError, FitOptions, Material, Outcome, Prior};
+
+#[test]
+fn a_prior_tells_what_the_scan_does_not() {
+    let (mut pulls, mut free) = (0.0, 0.0);
+    const SEEDS: u64 = 20;
+    for seed in 0..SEEDS {
+        let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.05, seed);
+        // The ellipsometer errs too.
+        let mean = 1.5 + 0.02 * Noise::new(3, seed).normal();
+        let prior = Some(Prior { mean, sigma: 0.02 });
+        let with = options(|options| options.instrument.priors[PLACE_N] = prior);
+        let (with, without) = (fit(&samples, &with), fit(&samples, &options(|_| ())));
+        for (place, actual) in [(1, 0.8), (PLACE_N, 1.5)] {
+            let error = with.uncertainty.stderr[place];
+            pulls += ((with.params[place] - actual) / error).powi(2) / (2.0 * SEEDS as f64);
+        }
+        free += (without.params[PLACE_N] - 1.5).abs() / SEEDS as f64;
+        assert!(with.uncertainty.stderr[PLACE_N] < 0.0201);
+        // What the samples themselves are left with is hardly more.
+        assert!(with.rms_ln >= without.rms_ln * (1.0 - 1e-9) && with.rms_ln < 1.05 * without.rms_ln);
+        let sigma = with.sigma.expect("what the prior was weighed by");
+        assert!((sigma / 0.05 - 1.0).abs() < 0.3, "{sigma}");
+    }
+    println!("mean squared pull {pulls:.2}; without the prior n is off by {free:.2}");
+    assert!((0.5..1.6).contains(&pulls) && free > 0.05);
+}
+
+#[test]
+fn priors_go_from_nothing_to_a_fixed_value() {
+    let samples = noisy(&dielectric(), &grid(&[20.0, 60.0], 4, 80), 0.05, 1);
+    let with = |sigma: f64| {
+        let prior = Some(Prior { mean: 1.45, sigma });
+        fit(&samples, &options(|options| options.instrument.priors[PLACE_N] = prior))
+    };
+    let fixed = options(|options| (options.lower[PLACE_N], options.upper[PLACE_N]) = (1.45, 1.45));
+    let (weak, strong, none, fixed) = (
+        with(1e4),
+        with(1e-6),
+        fit(&samples, &options(|_| ())),
+        fit(&samples, &fixed),
+    );
+    let apart = |a: &Outcome, b: &Outcome| {
+        let pairs = a.params.iter().zip(b.params.iter());
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert!(apart(&weak, &none) < 1e-4 && apart(&strong, &fixed) < 1e-4);
+    // Fewer samples than parameters suffice if priors make up for them.
+    let few = &samples[30..33];
+    assert_eq!(engine::fit(few, &options(|_| ())), Err(FitError::TooFew(3, 4)));
+    let known = options(|options| {
+        options.instrument.priors[PLACE_N] = Some(Prior { mean: 1.5, sigma: 0.02 });
+        options.instrument.priors[PLACE_M] = Some(Prior {
+            mean: 0.15,
+            sigma: 0.01,
+        });
+    });
+    assert!((fit(few, &known).params[PLACE_N] - 1.5).abs() < 0.1);
+}
+
+#[test]
+fn a_prior_of_kappa_is_one_of_kappa() {
+    let metal = Material::paper([0.1, 0.5, 0.0, 0.2, 1.2, 3.0]);
+    let samples = noisy(&metal, &grid(&[20.0, 50.0], 4, 80), 0.05, 2);
+    let with = |mean: f64| {
+        let mut options = FitOptions::default();
+        options.instrument.priors[5] = Some(Prior { mean, sigma: 0.001 });
+        fit(&samples, &options)
+    };
+    for mean in [3.0, 1.0, 0.0] {
+        let found = with(mean);
+        assert!((found.params[5] - mean).abs() < 0.02, "{mean}: {:?}", found.params);
+    }
+}

@@ -159,7 +159,7 @@ struct Judged {
 
 /// Changes if the scene does.
 fn fingerprint(samples: &[Sample<f64>]) -> f64 {
-    samples.iter().map(|sample| Real::ln(sample.brdf)).sum()
+    samples.iter().map(|sample| Real::portable_ln(sample.brdf)).sum()
 }
 
 fn brute_force(k: u64, starts: u64) -> f64 {
@@ -257,7 +257,7 @@ fn noisy(truth: &Params<f64>, theta_i: f64, count: usize, seed: u64) -> Vec<Samp
         let theta_s = (-85.0 + 170.0 * k as f64 / (count - 1) as f64).to_radians();
         let geometry = Geometry::new(theta_i, theta_s, f64::PI).expect("angles are above the horizon");
         let factor = 1.0 + 0.1 * (2.0 * f64::unit(random.next_u64()) - 1.0);
-        Sample::in_plane(theta_i, theta_s, Real::exp(brdf.ln_f(&geometry)) * factor)
+        Sample::in_plane(theta_i, theta_s, Real::portable_exp(brdf.ln_f(&geometry)) * factor)
     };
     (0..count).map(sample).collect()
 }

@@ -101,7 +101,7 @@ fn noise(samples: &[Sample<f64>]) -> f64 {
         let span = c.theta_s - a.theta_s;
         if a.theta_i == c.theta_i && a.delta_phi == c.delta_phi && span > 0.0 {
             let t = (b.theta_s - a.theta_s) / span;
-            let [y_a, y_b, y_c] = [a, b, c].map(|sample| Real::ln(sample.brdf));
+            let [y_a, y_b, y_c] = [a, b, c].map(|sample| Real::portable_ln(sample.brdf));
             let deviation = y_b - (y_a + (y_c - y_a) * t);
             // The line has the noise of its ends.
             off.push(deviation.abs() / (1.0 + t * t + (1.0 - t) * (1.0 - t)).sqrt());

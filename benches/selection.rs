@@ -145,7 +145,8 @@ fn draw(terms: u8, random: &mut Noise) -> (Vec<Sample<f64>>, Material, f64) {
     let angles = 1 + between(0.0, 3.0) as usize;
     let theta_i: Vec<f64> = (0..angles).map(|_| between(0.0, 80.0).round()).collect();
     let step = if between(0.0, 1.0) < 0.5 { 1 } else { 2 };
-    let mut log_between = |low: f64, high: f64| Real::exp(between(Real::ln(low), Real::ln(high)));
+    let mut log_between =
+        |low: f64, high: f64| Real::portable_exp(between(Real::portable_ln(low), Real::portable_ln(high)));
     let mut params = Params {
         rho_d: log_between(1e-3, 0.9),
         rho_s: log_between(0.01, 20.0),

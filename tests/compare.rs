@@ -15,7 +15,7 @@ fn scan(model: &str, parameters: &[f64], noise: f64) -> String {
     for theta_i in [20.0f64, 60.0] {
         for theta_s in (-80..=80).step_by(2) {
             let sample = Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0);
-            let f = Real::exp(model.ln_f(parameters, &sample).expect("valid directions"));
+            let f = Real::portable_exp(model.ln_f(parameters, &sample).expect("valid directions"));
             let sign = if theta_s % 4 == 0 { 1.0 } else { -1.0 };
             let _ = writeln!(csv, "{theta_i},{theta_s},{:e}", f * (1.0 + sign * noise));
         }

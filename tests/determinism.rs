@@ -24,7 +24,7 @@ fn scan() -> Vec<Sample<f64>> {
         Sample::in_plane(
             45f64.to_radians(),
             theta_s,
-            Real::exp(Brdf::<f64, ALL>::new(&truth).ln_f(&geometry) + ripple),
+            Real::portable_exp(Brdf::<f64, ALL>::new(&truth).ln_f(&geometry) + ripple),
         )
     };
     (0..37).map(sample).collect()

@@ -63,7 +63,7 @@ fn quantities_units_and_signs_are_what_the_options_say() {
     for theta_i in INCIDENT {
         for theta_s in scattered() {
             let (i, s) = (theta_i.to_radians(), theta_s.to_radians());
-            let value = f64::PI * brdf(theta_i, theta_s, 180.0) * Real::sin_cos(s).1;
+            let value = f64::PI * brdf(theta_i, theta_s, 180.0) * Real::portable_sin_cos(s).1;
             text += &format!("{i},{},{value}\n", -s);
         }
     }
@@ -296,7 +296,7 @@ fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
     let half = i as f64 + 0.5;
     let [h, d, p] = [half * half / 90.0, j as f64 + 0.5, k as f64 + 0.5].map(f64::to_radians);
     let turn = |sign: f64| {
-        let (sin_d, cos_d) = (Real::sin_cos(d).0 * sign, Real::sin_cos(d).1);
+        let (sin_d, cos_d) = (Real::portable_sin_cos(d).0 * sign, Real::portable_sin_cos(d).1);
         let (x, y, z) = (sin_d * libm::cos(p), sin_d * libm::sin(p), cos_d);
         [
             libm::cos(h) * x + libm::sin(h) * z,
@@ -319,7 +319,8 @@ fn middle(i: usize, j: usize, k: usize) -> Option<f64> {
 fn rms_from_truth(samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().map(|sample| {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-        let residual = Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry) - Real::ln(sample.brdf);
+        let residual =
+            Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry) - Real::portable_ln(sample.brdf);
         residual * residual
     });
     (squares.sum::<f64>() / samples.len() as f64).sqrt()

@@ -74,7 +74,7 @@ fn samples(theta_i: f64, f: impl Fn(&Sample<f64>) -> f64) -> Vec<Sample<f64>> {
 /// f of a model, sr^-1.
 fn f<M: Model<f64, P, C>, const P: usize, const C: usize>(x: &[f64; P], sample: &Sample<f64>) -> f64 {
     let geometry = M::geometry(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
-    Real::exp(ln_f::<f64, M, P, C>(x, geometry).0)
+    Real::portable_exp(ln_f::<f64, M, P, C>(x, geometry).0)
 }
 
 /// Cost of the best fit to data of the model itself.
@@ -163,7 +163,7 @@ fn tail<R: Real>() -> [f64; 2] {
                 let slope = (big(1.0) / less - ln.clone()).to_f64().value();
                 let exponent = q.f64() * ln.to_f64().value();
                 // Below this the lobe counts as R::TINY.
-                if tail.0.f64() < Real::ln(R::TINY.f64()) + 7.0 {
+                if tail.0.f64() < Real::portable_ln(R::TINY.f64()) + 7.0 {
                     continue;
                 }
                 let unit = R::EPSILON.f64() * (1.0 + exponent + ggx.0.f64().abs());

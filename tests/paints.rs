@@ -299,7 +299,7 @@ fn searches_find_the_parameters_again() {
                     let sample = Sample::in_plane(theta_i, f64::from(degrees).to_radians(), 1.0);
                     let ln_f = model.ln_f(&truth, &sample).expect("above the horizon");
                     samples.push(Sample {
-                        brdf: Real::exp(ln_f),
+                        brdf: Real::portable_exp(ln_f),
                         ..sample
                     });
                 }

@@ -169,14 +169,14 @@ fn many_outliers_do_not_draw_the_fit() {
     let kinds: [(&str, Spoils); 4] = [
         ("30 % above", |seed, place, part| {
             if unit(seed + 100, place) < 0.3 {
-                1.5 * Real::exp(2.7 * part)
+                1.5 * Real::portable_exp(2.7 * part)
             } else {
                 1.0
             }
         }),
         ("30 % below", |seed, place, part| {
             if unit(seed + 200, place) < 0.3 {
-                Real::exp(-2.7 * part) / 1.5
+                Real::portable_exp(-2.7 * part) / 1.5
             } else {
                 1.0
             }
@@ -241,7 +241,7 @@ fn a_narrow_lobe_is_no_outlier() {
                 };
                 let shade = (theta_s.to_degrees() - 74.0).max(0.0) / 6.0;
                 let ground = 0.06 * theta_s * theta_s;
-                sample.brdf = Real::exp(truth.ln_f(&sample).unwrap() + 0.01 * noise.normal() - ground - shade);
+                sample.brdf = Real::portable_exp(truth.ln_f(&sample).unwrap() + 0.01 * noise.normal() - ground - shade);
                 samples.push(sample);
             }
         }

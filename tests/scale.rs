@@ -27,7 +27,7 @@ fn scan() -> Vec<Sample<f64>> {
     let one = |(theta_i, theta_s)| {
         let sample = Sample::in_plane(theta_i, theta_s, 1.0);
         let ln_f = material.ln_f(&sample).expect("above the horizon");
-        Sample::in_plane(theta_i, theta_s, Real::exp(ln_f + noise()))
+        Sample::in_plane(theta_i, theta_s, Real::portable_exp(ln_f + noise()))
     };
     directions.map(one).collect()
 }

@@ -358,7 +358,7 @@ impl Formula<3> for Wrong {
 
     fn gradient<R: Real>(x: &[R; 3], at: &Directions<R>) -> (R, [R; 3]) {
         let [rho_d, rho_s, m] = *x;
-        let lobe = Real::exp(-at.tan2_theta_h / (m * m));
+        let lobe = Real::portable_exp(-at.tan2_theta_h / (m * m));
         let by_m = rho_s * lobe * at.tan2_theta_h / (m * m * m);
         (rho_d / R::PI + rho_s * lobe, [R::ONE / R::PI, lobe, by_m])
     }

@@ -45,7 +45,7 @@ fn main() {
         Some(Sample::in_plane(
             theta_i,
             theta_s,
-            Real::exp(Brdf::<f32, TERMS>::new(&truth).ln_f(&geometry)),
+            Real::portable_exp(Brdf::<f32, TERMS>::new(&truth).ln_f(&geometry)),
         ))
     });
     match fit(samples) {

@@ -189,7 +189,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             if has(TERMS, M_V) { R::ONE / m[1] } else { first },
             if has(TERMS, M_2) { R::ONE / m[2] } else { first },
         ];
-        let ln_rho_d = if rho_d > R::TINY { rho_d.ln() } else { -R::MAX };
+        let ln_rho_d = if rho_d > R::TINY { rho_d.portable_ln() } else { -R::MAX };
         Brdf {
             rho_d_pi: rho_d / R::PI,
             rho,
@@ -231,7 +231,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             let exponent = -block.columns[pair(lobe)][lane] * self.inverse_m2[lobe];
             brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
         }
-        (brightest, (-brightest).min(self.lift_limit).exp())
+        (brightest, (-brightest).min(self.lift_limit).portable_exp())
     }
 
     /// A column of the pair of facet angles of each lobe from place `from` on: lobe by lobe, the `G` lanes of [`Pack::gather`].

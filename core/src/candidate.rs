@@ -89,8 +89,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
                 most = most.min(bounds.upper[k] / x[k]);
             }
         }
-        let scale = (-residuals / weights).exp().max(least).min(most);
-        let ln_scale = scale.ln();
+        let scale = (-residuals / weights).portable_exp().max(least).min(most);
+        let ln_scale = scale.portable_ln();
         let cost = squares + ln_scale * (residuals + residuals + ln_scale * weights);
         if !(least < most && cost < squares) {
             return (*x, squares);

@@ -45,10 +45,10 @@ impl<R: Real> Number<R> for R {
         self
     }
     fn exp(self) -> Self {
-        Real::exp(self)
+        Real::portable_exp(self)
     }
     fn ln(self) -> Self {
-        Real::ln(self)
+        Real::portable_ln(self)
     }
     fn sqrt(self) -> Self {
         Real::sqrt(self)

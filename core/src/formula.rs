@@ -84,15 +84,19 @@ impl<R: Real> Directions<R> {
     /// [`SampleError::NotFinite`] and [`SampleError::BeyondHorizon`].
     pub fn new(theta_i: R, theta_s: R, delta_phi: R) -> Result<Self, SampleError> {
         let facet = Geometry::new(theta_i, theta_s, delta_phi)?.surface();
-        let (sin_i, cos_i) = theta_i.sin_cos();
-        let (sin_s, cos_s) = theta_s.sin_cos();
+        let (sin_i, cos_i) = theta_i.portable_sin_cos();
+        let (sin_s, cos_s) = theta_s.portable_sin_cos();
         let in_plane = delta_phi.abs() == R::PI;
         Ok(Directions {
             cos_i,
             cos_s,
             sin_i,
             sin_s,
-            cos_phi: if in_plane { -R::ONE } else { delta_phi.sin_cos().1 },
+            cos_phi: if in_plane {
+                -R::ONE
+            } else {
+                delta_phi.portable_sin_cos().1
+            },
             tan2_theta_h: facet.tan2_theta_h,
             cos_theta_d: facet.cos_theta_d,
             // Without the cancellation of a difference of sines.

@@ -101,19 +101,19 @@ impl<R: Real> Geometry<R> {
         }
         let half = R::of(0.5);
         let quarter_turn = R::PI * half;
-        let (sin_i, cos_i) = theta_i.sin_cos();
-        let (sin_s, cos_s) = theta_s.sin_cos();
+        let (sin_i, cos_i) = theta_i.portable_sin_cos();
+        let (sin_s, cos_s) = theta_s.portable_sin_cos();
         let above = R::ZERO <= theta_i && theta_i < quarter_turn && theta_s.abs() < quarter_turn;
         if !(above && cos_i > R::EPSILON && cos_s > R::EPSILON) {
             return Err(SampleError::BeyondHorizon);
         }
-        let (sin_sum, cos_sum) = ((theta_i + theta_s) * half).sin_cos();
-        let (sin_difference, cos_difference) = ((theta_i - theta_s) * half).sin_cos();
+        let (sin_sum, cos_sum) = ((theta_i + theta_s) * half).portable_sin_cos();
+        let (sin_difference, cos_difference) = ((theta_i - theta_s) * half).portable_sin_cos();
         // In plane exactly, though pi is not a number of this type.
         let (sin_phi, cos_phi) = if delta_phi.abs() == R::PI {
             (R::ONE, R::ZERO)
         } else {
-            (delta_phi * half).sin_cos()
+            (delta_phi * half).portable_sin_cos()
         };
         let half_sum = cos_sum * cos_difference; // (cos ti + cos ts) / 2
         // The same tan^2 written from its value at dphi = pi or from that at dphi = 0: the nearer one has the smaller azimuth term, and so no cancellation.
@@ -211,7 +211,7 @@ impl<R: Real, G> Observation<R, G> {
         }
         Ok(Observation {
             geometry,
-            ln_f: brdf.ln(),
+            ln_f: brdf.portable_ln(),
             weight: weight.abs(),
         })
     }

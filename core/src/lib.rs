@@ -28,6 +28,7 @@
 //! | starts worth a fit | [`search::Scene`] | `candidate.rs`, `propose.rs` | |
 //! | state to flash and back | [`saved::save`], [`saved::restore`] | `saved.rs` | |
 //! | standard errors, correlations | [`uncertainty::Uncertainty`] | `uncertainty.rs` | |
+//! | the usual types by short names | [`single`], [`double`] | `usual.rs` | |
 #![no_std]
 
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
@@ -59,6 +60,9 @@ mod scalar;
 pub mod search;
 pub mod start;
 pub mod uncertainty;
+mod usual;
+
+pub use usual::{double, single};
 
 /// The examples of the README are compiled and run as documentation tests.
 #[cfg(doctest)]

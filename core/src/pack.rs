@@ -38,7 +38,7 @@ impl<R: Real, const K: usize> Pack<R, K> {
     #[inline(always)]
     pub fn exp(self) -> Self {
         if ALONE && K > 1 {
-            self.map(R::exp)
+            self.map(R::portable_exp)
         } else {
             R::exp_pack(self)
         }
@@ -47,7 +47,7 @@ impl<R: Real, const K: usize> Pack<R, K> {
     #[inline(always)]
     pub fn ln(self) -> Self {
         if ALONE && K > 1 {
-            self.map(R::ln)
+            self.map(R::portable_ln)
         } else {
             R::ln_pack(self)
         }

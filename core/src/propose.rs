@@ -164,9 +164,8 @@ fn slope<R: Real, const P: usize>(
     let of_pair = || pair(seen, [numbers[0], numbers[1], numbers[2]]);
     match region {
         Region::Index(_) => like.unwrap_or(spread),
-        Region::Slopes(_) => {
-            of_pair().unwrap_or_else(|| like.unwrap_or(spread) * (R::of(3.0) * (numbers[3] - R::of(0.5))).exp())
-        }
+        Region::Slopes(_) => of_pair()
+            .unwrap_or_else(|| like.unwrap_or(spread) * (R::of(3.0) * (numbers[3] - R::of(0.5))).portable_exp()),
         Region::Everywhere if numbers[4] < R::of(PAIRS) => of_pair().unwrap_or(spread),
         _ => spread,
     }
@@ -266,7 +265,7 @@ fn vary<R: Real, const P: usize>(
 ) {
     for k in 0..P {
         if shapes.roles[k] != Role::Weight {
-            let factor = (own[k] + own[k] - R::ONE).exp();
+            let factor = (own[k] + own[k] - R::ONE).portable_exp();
             x[k] = (like[k] * factor).max(bounds.lower[k]).min(bounds.upper[k]);
         }
     }
@@ -277,6 +276,6 @@ fn log_between<R: Real>(lower: R, upper: R, u: R) -> R {
     if !(lower < upper) {
         return lower;
     }
-    let (a, b) = (lower.ln(), upper.ln());
-    (a + (b - a) * u).exp()
+    let (a, b) = (lower.portable_ln(), upper.portable_ln());
+    (a + (b - a) * u).portable_exp()
 }

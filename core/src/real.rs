@@ -9,6 +9,8 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use crate::pack::Pack;
 
 /// `f32` or `f64`.
+///
+/// Functions whose bits would differ if the standard library's were taken for them have names of their own: `x.exp()` of an `f64` is always the standard library's, `x.portable_exp()` always this one.
 pub trait Real:
     Copy
     + Debug
@@ -83,12 +85,12 @@ pub trait Real:
     fn rsqrt_pack<const K: usize>(x: Pack<Self, K>) -> Pack<Self, K>;
     /// [`Real::exp_pack`] of one number.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn exp(self) -> Self {
+    fn portable_exp(self) -> Self {
         Pack([self]).exp().0[0]
     }
     /// [`Real::ln_pack`] of one number.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn ln(self) -> Self {
+    fn portable_ln(self) -> Self {
         Pack([self]).ln().0[0]
     }
     /// [`Real::rsqrt_pack`] of one number.
@@ -99,9 +101,9 @@ pub trait Real:
     /// Square root, by libm; not for the inner loop.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, each at most 1 ulp up to 16; beyond that within 1e-4 (`f32`) of it, and an angle beyond 1000 counts as 1000.
-    fn sin_cos(self) -> (Self, Self);
+    fn portable_sin_cos(self) -> (Self, Self);
     /// Arc tangent, radians.
-    fn atan(self) -> Self;
+    fn portable_atan(self) -> Self;
     /// False for NaN and infinities.
     fn is_finite(self) -> bool;
 
@@ -229,7 +231,7 @@ impl Real for f64 {
         libm::sqrt(self)
     }
     // x = k pi/2 + r, with pi/2 in three parts of which the first two times k are exact; the series are those of FreeBSD's k_sin.c and k_cos.c.
-    fn sin_cos(self) -> (Self, Self) {
+    fn portable_sin_cos(self) -> (Self, Self) {
         const SHIFT: f64 = 6755399441055744.0;
         const HALF_PI: [f64; 3] = [
             f64::from_bits(0x3ff9_21fb_5440_0000),
@@ -253,7 +255,7 @@ impl Real for f64 {
         turned(r, sine, cosine, shifted.to_bits())
     }
     #[inline(always)]
-    fn atan(self) -> f64 {
+    fn portable_atan(self) -> f64 {
         libm::atan(self)
     }
     fn is_finite(self) -> bool {
@@ -360,7 +362,7 @@ impl Real for f32 {
         libm::sqrtf(self)
     }
     // As in f64; the series have the least largest relative error, 4e-9 and 2e-10 of the result, by Remez's exchange.
-    fn sin_cos(self) -> (Self, Self) {
+    fn portable_sin_cos(self) -> (Self, Self) {
         const SHIFT: f32 = 12582912.0;
         const HALF_PI: [f32; 3] = [
             f32::from_bits(0x3fc9_0f00),
@@ -376,7 +378,7 @@ impl Real for f32 {
         turned(r, sine, cosine, u64::from(shifted.to_bits()))
     }
     #[inline(always)]
-    fn atan(self) -> f32 {
+    fn portable_atan(self) -> f32 {
         libm::atanf(self)
     }
     fn is_finite(self) -> bool {

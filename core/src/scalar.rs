@@ -86,7 +86,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         let ln_f = M::row(pass, block, lane, want, row);
         let weight = block.weight[lane];
         if want == Want::Columns {
-            let unit = weight * (-block.ln_f[lane]).exp();
+            let unit = weight * (-block.ln_f[lane]).portable_exp();
             for column in row.iter_mut().take(Self::WEIGHTS_END) {
                 *column *= unit;
             }

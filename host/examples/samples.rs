@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .filter_map(|(place, theta_s)| {
             let sample = Sample::in_plane(0.5, theta_s, 1.0);
             let error = if place % 2 == 0 { 1.05 } else { 0.95 };
-            let brdf = Real::exp(truth.ln_f(&sample)?) * error;
+            let brdf = Real::portable_exp(truth.ln_f(&sample)?) * error;
             Some(Sample { brdf, ..sample })
         })
         .collect();

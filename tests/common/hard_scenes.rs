@@ -148,7 +148,7 @@ fn scan(directions: &[[f64; 3]], mut ln_f: impl FnMut([f64; 3], &Geometry<f64>) 
             } else {
                 delta_phi.to_radians()
             },
-            brdf: Real::exp(ln_f(direction, &geometry(direction)).max(-30.0)),
+            brdf: Real::portable_exp(ln_f(direction, &geometry(direction)).max(-30.0)),
             weight: 1.0,
         }
     };
@@ -240,13 +240,15 @@ fn misfit(random: &mut Random) -> Vec<Sample<f64>> {
             0 => {
                 // D of GGX over that of Beckmann is exp(x) / (1 + x)^2.
                 let x = geometry.surface().tan2_theta_h / (params.m * params.m);
-                let ln_ggx = ln_f(&surface, geometry).max(-700.0 - x) + x - 2.0 * Real::ln(1.0 + x);
-                Real::ln(Real::exp(ln_f(&rest, geometry)) + Real::exp(ln_ggx.min(700.0)))
+                let ln_ggx = ln_f(&surface, geometry).max(-700.0 - x) + x - 2.0 * Real::portable_ln(1.0 + x);
+                Real::portable_ln(Real::portable_exp(ln_f(&rest, geometry)) + Real::portable_exp(ln_ggx.min(700.0)))
             }
-            1 => Real::ln(Real::exp(ln_f(&params, geometry)) + Real::exp(ln_f(&wide, geometry))),
+            1 => Real::portable_ln(
+                Real::portable_exp(ln_f(&params, geometry)) + Real::portable_exp(ln_f(&wide, geometry)),
+            ),
             _ => {
                 let turns = direction[1] / period + phase;
-                let ripple = Real::sin_cos(std::f64::consts::TAU * (turns - turns.floor())).0;
+                let ripple = Real::portable_sin_cos(std::f64::consts::TAU * (turns - turns.floor())).0;
                 ln_f(&params, geometry) + height * ripple
             }
         };

@@ -42,15 +42,15 @@ impl Random {
         low + (high - low) * self.unit()
     }
     pub(crate) fn log_between(&mut self, low: f64, high: f64) -> f64 {
-        Real::exp(self.between(Real::ln(low), Real::ln(high)))
+        Real::portable_exp(self.between(Real::portable_ln(low), Real::portable_ln(high)))
     }
     pub(crate) fn one_in(&mut self, share: f64) -> bool {
         self.unit() < share
     }
     /// Standard normal (Box and Muller 1958).
     pub(crate) fn normal(&mut self) -> f64 {
-        let radius = Real::sqrt(-2.0 * Real::ln(1.0 - self.unit()));
-        radius * Real::sin_cos(std::f64::consts::TAU * self.unit()).1
+        let radius = Real::sqrt(-2.0 * Real::portable_ln(1.0 - self.unit()));
+        radius * Real::portable_sin_cos(std::f64::consts::TAU * self.unit()).1
     }
 }
 
@@ -97,7 +97,7 @@ pub fn scene(k: u64) -> Vec<Sample<f64>> {
             let clean = clean(kind, &params, &wide, &geometry);
             let mut f = match kind {
                 Kind::Uniform | Kind::TwoSlopes => clean * (1.0 + noise * random.between(-1.0, 1.0)),
-                _ => clean * Real::exp(noise * random.normal()),
+                _ => clean * Real::portable_exp(noise * random.normal()),
             };
             if kind == Kind::Sparse {
                 f += 1e-4 + 1e-3 * rho_d * random.unit();
@@ -120,10 +120,10 @@ fn clean(kind: Kind, params: &Params<f64>, wide: &Params<f64>, geometry: &Geomet
                 ..*params
             };
             let rest = Params { rho_s: 0.0, ..*params };
-            Real::exp(ln_f(&rest)) + Real::exp(ln_f(&surface) + x) / ((1.0 + x) * (1.0 + x))
+            Real::portable_exp(ln_f(&rest)) + Real::portable_exp(ln_f(&surface) + x) / ((1.0 + x) * (1.0 + x))
         }
-        Kind::TwoSlopes => Real::exp(ln_f(params)) + Real::exp(ln_f(wide)),
-        _ => Real::exp(ln_f(params)),
+        Kind::TwoSlopes => Real::portable_exp(ln_f(params)) + Real::portable_exp(ln_f(wide)),
+        _ => Real::portable_exp(ln_f(params)),
     }
 }
 

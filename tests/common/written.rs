@@ -17,7 +17,7 @@ pub fn brdf(theta_i: f64, theta_s: f64, delta_phi: f64) -> f64 {
         delta_phi.to_radians()
     };
     let geometry = Geometry::new(theta_i.to_radians(), theta_s.to_radians(), delta_phi).expect("valid angles");
-    Real::exp(Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry))
+    Real::portable_exp(Brdf::<f64, ALL>::new(&Params::from_array(TRUTH)).ln_f(&geometry))
 }
 
 /// Scattering angles in plane.
@@ -132,7 +132,7 @@ fn speos() -> String {
     for theta_i in INCIDENT {
         let rows = sides(theta_i);
         let ring = |&(theta, back, forward): &(f64, f64, f64)| {
-            let (sin, cos) = Real::sin_cos(theta.to_radians());
+            let (sin, cos) = Real::portable_sin_cos(theta.to_radians());
             f64::PI * (back + forward) * sin * cos
         };
         let steps = rows.windows(2);
@@ -192,7 +192,7 @@ fn pabopto() -> String {
     for theta_i in INCIDENT {
         text += &format!("#incident_angle {theta_i} 90\n");
         for (theta, back, forward) in sides(theta_i) {
-            let cos = Real::sin_cos(theta.to_radians()).1;
+            let cos = Real::portable_sin_cos(theta.to_radians()).1;
             text += &format!("{theta} 270 {}\n", forward * cos);
             if theta > 0.0 {
                 text += &format!("{theta} 90 {}\n", back * cos);

@@ -107,7 +107,7 @@ fn papers(course: &Course, seed: u64) {
 /// Start `k`, uniform in the logarithm of each parameter.
 pub fn log_uniform(course: &Course, seed: u64, k: u64) -> [f64; 6] {
     let [lower, upper] = box_of(course).map(|side| std::array::from_fn(|k| side[k]));
-    start::uniform::<f64, 6>(seed, k, &Bounds { lower, upper }).map(Real::exp)
+    start::uniform::<f64, 6>(seed, k, &Bounds { lower, upper }).map(Real::portable_exp)
 }
 
 fn multistart(course: &Course, seed: u64, local: Local) {

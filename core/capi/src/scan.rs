@@ -158,5 +158,5 @@ pub unsafe fn brdf<R: Real>(model: u32, direction: [R; 3], params: *const brdfit
 
 fn brdf_of<R: Real, D: Distribution>(params: &Params<R>, geometry: Geometry<R>) -> R {
     let x = Scan::<R, ALL, 6>::coordinates(params);
-    value::<R, Microfacet<ALL, D>, 6, 6>(&x, geometry.into()).exp()
+    value::<R, Microfacet<ALL, D>, 6, 6>(&x, geometry.into()).portable_exp()
 }

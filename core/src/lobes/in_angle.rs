@@ -13,7 +13,7 @@ impl<D, M: Masking<D, 6>> Masking<D, 6> for InAngle<M> {
         let mut columns = M::geometry(theta_i, theta_s, delta_phi)?;
         for lobe in 0..2 {
             let tan2 = columns[lobe];
-            let theta_h = tan2.sqrt().atan();
+            let theta_h = tan2.sqrt().portable_atan();
             columns[lobe] = theta_h * theta_h;
             columns[4 + lobe] = columns[4 + lobe] / ((R::ONE + tan2) * (R::ONE + tan2));
         }

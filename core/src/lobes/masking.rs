@@ -33,7 +33,7 @@ impl<D: Shadowing> Masking<D, 8> for Smith {
     fn geometry<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; 8], SampleError> {
         let [a, b, c, d, e, f] = unmasked(theta_i, theta_s, delta_phi)?.into();
         let tan2 = |theta: R| {
-            let (sin, cos) = theta.sin_cos();
+            let (sin, cos) = theta.portable_sin_cos();
             (sin / cos) * (sin / cos)
         };
         Ok([a, b, c, d, e, f, tan2(theta_i), tan2(theta_s)])
@@ -53,7 +53,7 @@ impl<D: Shadowing> Masking<D, 8> for Smith {
 /// Eq. 14's geometry without Eq. 9 in the factor of the surface lobe.
 fn unmasked<R: Real>(theta_i: R, theta_s: R, delta_phi: R) -> Result<Geometry<R>, SampleError> {
     let mut geometry = Geometry::new(theta_i, theta_s, delta_phi)?;
-    let (cos_i, cos_s) = (theta_i.sin_cos().1, theta_s.sin_cos().1);
+    let (cos_i, cos_s) = (theta_i.portable_sin_cos().1, theta_s.portable_sin_cos().1);
     let surface = &mut geometry.lobes[0];
     let inverse_cos2 = R::ONE + surface.tan2_theta_h;
     surface.factor = R::of(0.25) / (cos_i * cos_s) * (inverse_cos2 * inverse_cos2) / R::PI;

@@ -45,9 +45,9 @@ impl Formula<7> for BeardMaxwell {
     fn brdf<R: Real, N: Number<R>>([rho_d, rho_s, rho_v, m, n, tau, omega]: &[N; 7], at: &Directions<R>) -> N {
         let cosines = at.cos_i * at.cos_s;
         let volume = R::of(2.0) / (at.cos_i + at.cos_s);
-        let theta_h = at.tan2_theta_h.sqrt().atan();
+        let theta_h = at.tan2_theta_h.sqrt().portable_atan();
         let c = at.cos_theta_d;
-        let theta_d = ((R::ONE - c * c).max(R::ZERO).sqrt() / c).atan();
+        let theta_d = ((R::ONE - c * c).max(R::ZERO).sqrt() / c).portable_atan();
         let cos2_theta_h = R::ONE / (R::ONE + at.tan2_theta_h);
         // What is too low for the exponential of this type counts as 0.
         let exponent = N::of(-theta_h * theta_h) / m.squared();

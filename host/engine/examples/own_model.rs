@@ -61,7 +61,7 @@ fn main() {
             let noise = if k % 2 == 0 { 0.01 } else { -0.01 };
             let ln_f = PLASTER.ln_f(&truth, &empty).expect("above the horizon");
             Sample {
-                brdf: Real::exp(ln_f + noise),
+                brdf: Real::portable_exp(ln_f + noise),
                 ..empty
             }
         })

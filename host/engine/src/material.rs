@@ -62,7 +62,7 @@ impl Material {
         let slopes = parameters.filter(|(parameter, _)| parameter.role == Role::Slope);
         // Of ABg the shoulder is where B is |beta - beta_0|^g, and of K-correlation where b |beta - beta_0| is 1.
         let abg = get("B").zip(get("g")).filter(|(_, g)| *g > 0.0);
-        let abg = abg.map(|(b, g)| Real::exp(Real::ln(b) / g));
+        let abg = abg.map(|(b, g)| Real::portable_exp(Real::portable_ln(b) / g));
         let lengths = [get("b"), get("b_2")].into_iter().flatten().map(|b| 1.0 / b);
         let all = slopes.map(|(_, &slope)| slope).chain(abg).chain(lengths);
         all.fold(1.0, f64::min).max(1e-7)
@@ -80,6 +80,6 @@ impl Material {
 
     /// Model less measurement in ln f, times the sample's weight; none beyond the horizon.
     pub fn residual(&self, sample: &Sample<f64>) -> Option<f64> {
-        Some(sample.weight * (self.ln_f(sample)? - Real::ln(sample.brdf)))
+        Some(sample.weight * (self.ln_f(sample)? - Real::portable_ln(sample.brdf)))
     }
 }

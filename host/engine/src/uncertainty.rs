@@ -113,7 +113,7 @@ pub fn inside_of_bound(push: f64) -> f64 {
     let mean = if push > 6.0 {
         (1..=20).rev().fold(push, |rest, k| push + f64::from(k) / rest)
     } else {
-        let density = Real::exp(-0.5 * push * push) / Real::sqrt(2.0 * std::f64::consts::PI);
+        let density = Real::portable_exp(-0.5 * push * push) / Real::sqrt(2.0 * std::f64::consts::PI);
         density / (0.5 * libm::erfc(push * std::f64::consts::FRAC_1_SQRT_2))
     };
     // With mean = push + 1 / (push + 2 / (...)): 1 - push (mean - push).

@@ -86,7 +86,7 @@ impl Points<'_> {
         Ok(match ln {
             true => ln_f,
             false if ln_f < LEAST_LN => 0.0,
-            false => Real::exp(ln_f),
+            false => Real::portable_exp(ln_f),
         })
     }
 }

@@ -27,8 +27,8 @@ impl Noise {
 
     /// Standard normal (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
-        let radius = Real::sqrt(-2.0 * Real::ln(1.0 - self.unit()));
-        radius * Real::sin_cos(std::f64::consts::TAU * self.unit()).1
+        let radius = Real::sqrt(-2.0 * Real::portable_ln(1.0 - self.unit()));
+        radius * Real::portable_sin_cos(std::f64::consts::TAU * self.unit()).1
     }
 }
 
@@ -42,7 +42,7 @@ pub fn copy(samples: &[Sample<f64>], view: impl Into<View>, scale: f64, noise: &
         let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
         let ln_f = ln_f + scale / weight * noise.normal();
         Sample {
-            brdf: Real::exp(ln_f.clamp(-LARGEST_LN, LARGEST_LN)),
+            brdf: Real::portable_exp(ln_f.clamp(-LARGEST_LN, LARGEST_LN)),
             ..*sample
         }
     };

@@ -266,13 +266,13 @@ fn point(x: f64, runs: &[Run], at: fn(&Step) -> f64, known: bool) -> Point {
 
 /// The powers of 10^(1/16) from just above `low` to just above `high`; none without a range.
 fn grid(low: f64, high: f64) -> impl Iterator<Item = f64> {
-    let place = |x: f64| (PER_DECADE * LOG10_E * Real::ln(x) - 1e-9).ceil() as i32;
+    let place = |x: f64| (PER_DECADE * LOG10_E * Real::portable_ln(x) - 1e-9).ceil() as i32;
     let (first, last) = if 0.0 < low && low <= high {
         (place(low), place(high))
     } else {
         (1, 0)
     };
-    (first..=last).map(|k| Real::exp(f64::from(k) / (PER_DECADE * LOG10_E)))
+    (first..=last).map(|k| Real::portable_exp(f64::from(k) / (PER_DECADE * LOG10_E)))
 }
 
 /// Percentiles by the nearest rank.

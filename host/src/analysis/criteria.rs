@@ -33,7 +33,7 @@ impl Criteria {
         let cost = cost.max(rounding(samples, precision));
         // The variance of the residuals is a parameter too.
         let k = parameters as f64 + 1.0;
-        let deviance = samples * Real::ln(cost / samples);
+        let deviance = samples * Real::portable_ln(cost / samples);
         let room = samples - k - 1.0;
         Criteria {
             parameters,
@@ -44,7 +44,7 @@ impl Criteria {
             } else {
                 f64::INFINITY
             },
-            bic: deviance + k * Real::ln(samples),
+            bic: deviance + k * Real::portable_ln(samples),
         }
     }
 

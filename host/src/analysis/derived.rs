@@ -81,7 +81,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
     let product = |rho: &str| {
         let place = |name: &str| material.model.place(name);
         let (rho, n, kappa) = (place(rho)?, place("n")?, place("kappa"));
-        let cos_i = Real::sin_cos(theta_i).1;
+        let cos_i = Real::portable_sin_cos(theta_i).1;
         let of = |material: &Material| {
             let at = |place: usize| material.values[place];
             let (f, d_n, d_kappa) = fresnel(cos_i, at(n), kappa.map_or(0.0, at));
@@ -125,7 +125,7 @@ fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> 
     };
     let top = brightest(&ln_f, theta_i, lobe.width());
     let (at_top, ln_top) = (gradient(top)?, ln_f(top));
-    let f = Real::exp(ln_top);
+    let f = Real::portable_exp(ln_top);
     let half = |end: f64| {
         let theta_s = crossing(|theta_s| ln_f(theta_s) - (ln_top - LN_2), top, end)?;
         let step = 1e-4 * (theta_s - top);

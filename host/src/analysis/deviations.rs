@@ -51,7 +51,7 @@ pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
             }
             let before: Vec<f64> = now.samples.iter().map(|sample| sample.weight / unit).collect();
             let view = outcome.view();
-            let f = |sample: &Sample<f64>| view.ln_f(sample).map_or(sample.brdf, Real::exp);
+            let f = |sample: &Sample<f64>| view.ln_f(sample).map_or(sample.brdf, Real::portable_exp);
             (now.samples, unit) = weighted(&measurement, f);
             let change = now.samples.iter().zip(before);
             let change = change.map(|(sample, before)| (sample.weight / unit / before - 1.0).abs());
@@ -75,7 +75,7 @@ fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64) -> (Vec<
     let one = |(sample, deviation): (&Sample<f64>, &Deviation)| {
         let (sigma, low) = deviation.of_ln(f(sample));
         Sample {
-            brdf: sample.brdf * Real::exp(low),
+            brdf: sample.brdf * Real::portable_exp(low),
             weight: sample.weight / unit * deviation.over(sample.brdf) / sigma,
             ..*sample
         }

@@ -173,7 +173,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 fn in_plane(group: &[&Sample<f64>]) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = group
         .iter()
-        .filter_map(|sample| Some((plane::signed_theta_s(sample)?, Real::ln(sample.brdf))))
+        .filter_map(|sample| Some((plane::signed_theta_s(sample)?, Real::portable_ln(sample.brdf))))
         .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points

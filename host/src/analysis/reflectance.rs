@@ -34,7 +34,7 @@ const RAYS: usize = 64;
 ///
 /// A half of the disk lies around the specular direction, the other around the direction of incidence, where the peaks are: each is integrated along rays from there, ever denser towards it.
 fn of_any(material: &Material, theta_i: f64) -> (f64, Values) {
-    let sin_i = Real::sin_cos(theta_i).0;
+    let sin_i = Real::portable_sin_cos(theta_i).0;
     let width = material.width();
     let rays: [(f64, f64); RAYS] = nodes(2.0 * PI);
     let (mut sum, mut sums) = (0.0, Values::from_fn(material.values.len(), |_| 0.0));
@@ -54,7 +54,7 @@ fn of_any(material: &Material, theta_i: f64) -> (f64, Values) {
             let end = asinh(reach / width);
             for k in 0..RADII {
                 let u = (k as f64 + 0.5) * end / RADII as f64;
-                let (grown, shrunk) = (Real::exp(u), Real::exp(-u));
+                let (grown, shrunk) = (Real::portable_exp(u), Real::portable_exp(-u));
                 let r = 0.5 * width * (grown - shrunk);
                 let step = 0.5 * width * (grown + shrunk) * end / RADII as f64;
                 let (x, y) = (centre + r * cos_t, r * sin_t);
@@ -68,7 +68,7 @@ fn of_any(material: &Material, theta_i: f64) -> (f64, Values) {
                 let Some((ln_f, gradient)) = material.gradient(&sample) else {
                     continue;
                 };
-                let part = Real::exp(ln_f) * r * step * (2.0 * PI / RAYS as f64);
+                let part = Real::portable_exp(ln_f) * r * step * (2.0 * PI / RAYS as f64);
                 sum += part;
                 for (sum, slope) in sums.iter_mut().zip(gradient.iter()) {
                     *sum += part * slope;
@@ -80,10 +80,10 @@ fn of_any(material: &Material, theta_i: f64) -> (f64, Values) {
 }
 
 fn asinh(x: f64) -> f64 {
-    Real::ln(x + Real::sqrt(x * x + 1.0))
+    Real::portable_ln(x + Real::sqrt(x * x + 1.0))
 }
 
 /// Sine and cosine of the midpoints of equal parts of 0 to `end`.
 fn nodes<const N: usize>(end: f64) -> [(f64, f64); N] {
-    std::array::from_fn(|k| Real::sin_cos((k as f64 + 0.5) * end / N as f64))
+    std::array::from_fn(|k| Real::portable_sin_cos((k as f64 + 0.5) * end / N as f64))
 }

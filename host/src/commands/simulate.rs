@@ -200,7 +200,11 @@ fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Re
     };
     let ln_f = material.ln_f(&sample).unwrap_or(f64::NAN);
     if ln {
-        return Ok(if factor == 1.0 { ln_f } else { ln_f + Real::ln(factor) });
+        return Ok(if factor == 1.0 {
+            ln_f
+        } else {
+            ln_f + Real::portable_ln(factor)
+        });
     }
     if ln_f.is_nan() || ln_f <= LEAST_LN {
         return Err(Error::new(format!(
@@ -209,7 +213,7 @@ fn value_at(material: &Material, degrees: [f64; 3], factor: f64, ln: bool) -> Re
         ))
         .help("use --ln, or give a diffuse term"));
     }
-    Ok(Real::exp(ln_f) * factor)
+    Ok(Real::portable_exp(ln_f) * factor)
 }
 
 /// The angles of a list whose members are numbers or `start:stop:step`; a step too far never adds up, for each angle is `start + index * step`.

@@ -111,7 +111,7 @@ impl Model {
             brdf: 1.0,
             weight: 1.0,
         };
-        self.material.ln_f(&sample).map_or(0.0, Real::exp)
+        self.material.ln_f(&sample).map_or(0.0, Real::portable_exp)
     }
 
     /// The parameters of Eq. 14, for forms that know no other model.

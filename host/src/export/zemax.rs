@@ -94,9 +94,9 @@ fn at(model: &Model, theta_i: f64, azimuth: f64, radial: f64) -> f64 {
             0.0
         };
     }
-    let (sin_i, cos_i) = Real::sin_cos(radians);
-    let (sin_a, cos_a) = Real::sin_cos(azimuth.to_radians());
-    let (sin_r, cos_r) = Real::sin_cos(radial.to_radians());
+    let (sin_i, cos_i) = Real::portable_sin_cos(radians);
+    let (sin_a, cos_a) = Real::portable_sin_cos(azimuth.to_radians());
+    let (sin_r, cos_r) = Real::portable_sin_cos(radial.to_radians());
     let x = sin_i * cos_r - cos_i * sin_r * cos_a;
     let y = sin_r * sin_a;
     let z = cos_i * cos_r + sin_i * sin_r * cos_a;

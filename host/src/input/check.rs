@@ -199,7 +199,7 @@ fn masked(sample: &Sample<f64>, value: f64, options: &ReadOptions) -> Option<Rea
     if options.max_angle.is_some_and(beyond) {
         return Some(Reason::MaxAngle);
     }
-    let near = |window: f64| from_retro(sample) <= Real::sin_cos(window.to_radians() / 2.0).0 + ROUNDING;
+    let near = |window: f64| from_retro(sample) <= Real::portable_sin_cos(window.to_radians() / 2.0).0 + ROUNDING;
     if options.mask_retro.is_some_and(near) {
         return Some(Reason::Retro);
     }
@@ -225,15 +225,18 @@ fn is_near_retro(row: &Row, read_as: &ReadAs) -> bool {
             0.0,
         )
     };
-    from_retro(&sample) <= Real::sin_cos(8f64.to_radians() / 2.0).0
+    from_retro(&sample) <= Real::portable_sin_cos(8f64.to_radians() / 2.0).0
 }
 
 /// Sine of half the angle between the directions of incidence and of scattering.
 fn from_retro(sample: &Sample<f64>) -> f64 {
-    let half = |angle: f64| Real::sin_cos(angle / 2.0).0;
+    let half = |angle: f64| Real::portable_sin_cos(angle / 2.0).0;
     // Signed theta_s with the azimuth of retro, 0.
     let (across, turned) = (half(sample.theta_i - sample.theta_s), half(sample.delta_phi));
-    let (sin_i, sin_s) = (Real::sin_cos(sample.theta_i).0, Real::sin_cos(sample.theta_s).0);
+    let (sin_i, sin_s) = (
+        Real::portable_sin_cos(sample.theta_i).0,
+        Real::portable_sin_cos(sample.theta_s).0,
+    );
     (across * across + sin_i * sin_s * turned * turned).max(0.0).sqrt()
 }
 
@@ -404,7 +407,7 @@ mod tests {
                 ..at
             })
         };
-        let sine = |degrees: f64| Real::sin_cos(degrees.to_radians()).0;
+        let sine = |degrees: f64| Real::portable_sin_cos(degrees.to_radians()).0;
         assert!((angle(33.0, 0.0) - sine(1.5)).abs() < 1e-15);
         assert!((angle(-33.0, 180.0) - sine(1.5)).abs() < 1e-15);
         // At one elevation the azimuth counts by its sine.

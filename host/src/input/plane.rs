@@ -18,8 +18,11 @@ pub fn signed_theta_s(sample: &Sample<f64>) -> Option<f64> {
 
 /// The angle between the directions of a sample and of a mirror, degrees.
 pub fn from_specular(sample: &Sample<f64>) -> f64 {
-    let half = |angle: f64| Real::sin_cos(angle / 2.0).0;
-    let (sin_i, sin_s) = (Real::sin_cos(sample.theta_i).0, Real::sin_cos(sample.theta_s).0);
+    let half = |angle: f64| Real::portable_sin_cos(angle / 2.0).0;
+    let (sin_i, sin_s) = (
+        Real::portable_sin_cos(sample.theta_i).0,
+        Real::portable_sin_cos(sample.theta_s).0,
+    );
     let (across, turned) = (half(sample.theta_i - sample.theta_s), half(f64::PI - sample.delta_phi));
     let sine = (across * across + sin_i * sin_s * turned * turned).max(0.0).sqrt();
     2.0 * libm::asin(sine.min(1.0)).to_degrees()

@@ -52,7 +52,7 @@ fn row_mean(s: &Row, p: &Row, scan: &RawScan) -> Result<Row, Error> {
     let (value, weight) = match scan.quantity.is_logarithm() {
         None => (0.5 * (s.value + p.value), weight(s, p)),
         Some(factor) => {
-            let [a, b] = [s, p].map(|row| Real::exp(row.value * factor));
+            let [a, b] = [s, p].map(|row| Real::portable_exp(row.value * factor));
             let sigma = |row: &Row, f: f64| match row.weight {
                 Weight::Sigma(sigma) => Weight::Sigma(sigma * factor * f),
                 other => other,
@@ -62,7 +62,7 @@ fn row_mean(s: &Row, p: &Row, scan: &RawScan) -> Result<Row, Error> {
                 weight: sigma(row, value),
                 ..*row
             };
-            let value = Real::ln(0.5 * (a + b)) / factor;
+            let value = Real::portable_ln(0.5 * (a + b)) / factor;
             let weight = match weight(&at(s, a), &at(p, b)) {
                 Some(Weight::Sigma(sigma)) => Some(Weight::Sigma(sigma / (0.5 * (a + b)) / factor)),
                 other => other,

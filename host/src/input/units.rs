@@ -179,7 +179,7 @@ impl Quantity {
         if let Some(factor) = self.is_logarithm() {
             let ln = value * factor;
             return if (-708.0..=709.0).contains(&ln) {
-                Ok(Real::exp(ln))
+                Ok(Real::portable_exp(ln))
             } else {
                 fail("the logarithm of a value beyond the range of numbers")
             };
@@ -187,7 +187,7 @@ impl Quantity {
         if !(value > 0.0) {
             return fail("which has no logarithm");
         }
-        let cos_s = || Real::sin_cos(theta_s).1;
+        let cos_s = || Real::portable_sin_cos(theta_s).1;
         let brdf = match self {
             Quantity::BrdfCos => value / cos_s(),
             Quantity::Brf => value / f64::PI,
@@ -211,8 +211,8 @@ mod tests {
         let (f, theta_s) = (0.05, 60f64.to_radians());
         let values = [
             f,
-            Real::ln(f),
-            Real::ln(f) / std::f64::consts::LN_10,
+            Real::portable_ln(f),
+            Real::portable_ln(f) / std::f64::consts::LN_10,
             f / 2.0,
             f * f64::PI,
             f * f64::PI / 2.0,

@@ -65,7 +65,7 @@ impl Axis {
         let (low, high) = (low - 0.03 * span, high + 0.03 * span);
         // The least of 1, 2 and 5 times a power of ten that gives few enough labels.
         let least = (high - low) / (pixels / 70.0).max(3.0);
-        let power = Real::exp(log10(least).floor() / LOG10_E);
+        let power = Real::portable_exp(log10(least).floor() / LOG10_E);
         let ticks = |step: f64| -> Vec<Tick> {
             let tick = |at: f64| Tick {
                 at,
@@ -113,7 +113,7 @@ impl Axis {
             for decade in steps(low - 1.0, high, 1.0).filter(|_| decades <= most) {
                 for &(mantissa, is_labelled) in &all {
                     let at = decade + log10(mantissa);
-                    let value = mantissa * Real::exp(decade / LOG10_E);
+                    let value = mantissa * Real::portable_exp(decade / LOG10_E);
                     if low <= at && at <= high {
                         let label = is_labelled.then(|| svg::number(value));
                         ticks.push(Tick { at, label });

@@ -37,7 +37,7 @@ pub fn peak(ln_f: &LnF, theta_i: f64, x: &Axis) -> f64 {
 /// Eq. 17: the sum of squared residuals of ln f over the squared number of samples; invalid samples are left out.
 pub fn mse2(ln_f: &LnF, samples: &[Sample<f64>]) -> f64 {
     let squares = samples.iter().filter_map(|sample| {
-        let residual = sample.weight * (ln_f(sample)? - Real::ln(sample.brdf));
+        let residual = sample.weight * (ln_f(sample)? - Real::portable_ln(sample.brdf));
         Some(residual * residual)
     });
     squares.sum::<f64>() / (samples.len() * samples.len()) as f64

@@ -46,7 +46,7 @@ pub fn polar_svg(samples: &[Sample<f64>], material: &Material) -> String {
     let inner = inner.min(outer - 1.0);
     let radius = |log10: f64| RADIUS * ((log10 - inner) / (outer - inner)).clamp(0.0, 1.02);
     let place = |(theta_s, log10): (f64, f64)| {
-        let (sin, cos) = Real::sin_cos(theta_s.to_radians());
+        let (sin, cos) = Real::portable_sin_cos(theta_s.to_radians());
         (CENTRE.0 + radius(log10) * sin, CENTRE.1 - radius(log10) * cos)
     };
 
@@ -127,7 +127,7 @@ fn grid(out: &mut String, inner: f64, outer: f64) {
                 x + half,
                 y + 20.0,
                 "text-anchor=\"middle\" font-size=\"12\"",
-                &svg::number(3.0 * Real::exp(inner * std::f64::consts::LN_10)),
+                &svg::number(3.0 * Real::portable_exp(inner * std::f64::consts::LN_10)),
             );
         }
         for side in [-1.0, 1.0].iter().take(if decade == 0 { 1 } else { 2 }) {
@@ -143,7 +143,7 @@ fn grid(out: &mut String, inner: f64, outer: f64) {
     );
     for ray in -5..=5 {
         let angle = 15.0 * f64::from(ray);
-        let (sin, cos) = Real::sin_cos(angle.to_radians());
+        let (sin, cos) = Real::portable_sin_cos(angle.to_radians());
         let end = |radius: f64| (x + radius * sin, y - radius * cos);
         svg::path(out, "stroke=\"#ddd\"", &[CENTRE, end(RADIUS)]);
         let (label_x, label_y) = end(RADIUS + 20.0);

@@ -125,5 +125,5 @@ pub fn escape(text: &str) -> String {
 
 /// The logarithm to the base of 10.
 pub fn log10(value: f64) -> f64 {
-    Real::ln(value) * LOG10_E
+    Real::portable_ln(value) * LOG10_E
 }

@@ -121,7 +121,7 @@ fn curve(material: &Material, theta_i: f64, draw: &Draw) -> Curve {
     let (center, width) = (theta_i.to_degrees(), draw.to - draw.from);
     let even = (0..=EVEN).map(|k| draw.from + width * k as f64 / EVEN as f64);
     let near = (0..=NEAR).flat_map(|k| {
-        let off = 20.0 * Real::exp(-0.2 * f64::from(k));
+        let off = 20.0 * Real::portable_exp(-0.2 * f64::from(k));
         [center - off, center + off]
     });
     let mut x: Vec<f64> = even
@@ -130,7 +130,7 @@ fn curve(material: &Material, theta_i: f64, draw: &Draw) -> Curve {
         .collect();
     x.sort_by(f64::total_cmp);
     x.dedup();
-    let f = |x: &f64| ln_f(&Sample::in_plane(theta_i, x.to_radians(), 1.0)).map(Real::exp);
+    let f = |x: &f64| ln_f(&Sample::in_plane(theta_i, x.to_radians(), 1.0)).map(Real::portable_exp);
     let (x, f) = x.into_iter().filter_map(|x| Some((x, f(&x)?))).unzip();
     Curve {
         theta_i: rounded(center),

@@ -1,6 +1,6 @@
 //! Intervals of `f64` that are rounded outward.
 //!
-//! A result of IEEE `+ - * /` or sqrt is off by half a unit in the last place, one of [`Real::exp`] or [`Real::ln`] by less than one (tested against 50 digits).
+//! A result of IEEE `+ - * /` or sqrt is off by half a unit in the last place, one of [`Real::portable_exp`] or [`Real::portable_ln`] by less than one (tested against 50 digits).
 //! Both ends are moved outward by at least twice that, so an interval contains every exact result of numbers in its operands.
 //! Where infinite ends leave a result open, it is the whole line.
 
@@ -30,13 +30,17 @@ pub(crate) fn up(x: f64) -> f64 {
 /// A number below e^x; 0 where e^x is too small.
 #[inline(always)]
 pub(crate) fn exp_down(x: f64) -> f64 {
-    if x < -707.0 { 0.0 } else { down(Real::exp(x)) }
+    if x < -707.0 { 0.0 } else { down(Real::portable_exp(x)) }
 }
 
 /// A number above e^x.
 #[inline(always)]
 pub(crate) fn exp_up(x: f64) -> f64 {
-    if x > 708.0 { f64::INFINITY } else { up(Real::exp(x)) }
+    if x > 708.0 {
+        f64::INFINITY
+    } else {
+        up(Real::portable_exp(x))
+    }
 }
 
 /// A number below ln x; minus infinity where x is 0 or below every normal number.
@@ -47,7 +51,7 @@ pub(crate) fn ln_down(x: f64) -> f64 {
     } else if x == f64::INFINITY {
         709.0
     } else {
-        down(Real::ln(x))
+        down(Real::portable_ln(x))
     }
 }
 
@@ -57,7 +61,7 @@ pub(crate) fn ln_up(x: f64) -> f64 {
     if x == f64::INFINITY {
         x
     } else {
-        up(Real::ln(x.max(f64::MIN_POSITIVE)))
+        up(Real::portable_ln(x.max(f64::MIN_POSITIVE)))
     }
 }
 

@@ -104,7 +104,7 @@ pub(crate) fn narrow(scene: &Scene, region: &mut Region, target: f64, least: f64
             let others: f64 = (0..PARTS).filter(|&l| l != k).map(|l| exp_up(one.most[l])).sum();
             let lack = bottom - others * (1.0 + ROUNDING);
             if lack > f64::MIN_POSITIVE {
-                let need = Real::ln(lack) - 1e-12;
+                let need = Real::portable_ln(lack) - 1e-12;
                 region.lo[k] = region.lo[k].max(need - hi - pad(need, hi));
                 if slope > 0.0 {
                     let step = (before.hi[k] + hi - need + pad(before.hi[k], hi)) / slope;

@@ -83,7 +83,7 @@ impl Scene {
             }
             let weight = sample.weight.abs() / heaviest;
             if weight * weight > 0.0 {
-                seen.push((geometry, Real::ln(sample.brdf), weight * weight));
+                seen.push((geometry, Real::portable_ln(sample.brdf), weight * weight));
             }
         }
         let lobes = seen.iter().flat_map(|(geometry, ..)| geometry.lobes);
@@ -136,9 +136,9 @@ impl Scene {
     /// The parameters at the coordinates of a [`super::Region`], which need not be within the bounds; of absent terms weights and kappa are 0, m and n are 1.
     pub fn params(&self, x: &[f64; D]) -> Params<f64> {
         let lobes = self.present[1] || self.present[2];
-        let n = if lobes { Real::exp(x[A]) } else { 1.0 };
+        let n = if lobes { Real::portable_exp(x[A]) } else { 1.0 };
         let kappa = if lobes {
-            (Real::exp(x[B]) - 1.0).max(0.0).sqrt()
+            (Real::portable_exp(x[B]) - 1.0).max(0.0).sqrt()
         } else {
             0.0
         };
@@ -146,10 +146,10 @@ impl Scene {
             if x[k] == f64::NEG_INFINITY {
                 0.0
             } else if k == 0 {
-                Real::exp(x[0])
+                Real::portable_exp(x[0])
             } else {
                 let f = fresnel(self.cosines[self.reference[k - 1]], n, kappa).0;
-                Real::exp(x[k] - Real::ln(f.max(f64::MIN_POSITIVE)) - Real::ln(x[MU]))
+                Real::portable_exp(x[k] - Real::portable_ln(f.max(f64::MIN_POSITIVE)) - Real::portable_ln(x[MU]))
             }
         };
         Params {
@@ -164,7 +164,13 @@ impl Scene {
 
     /// The coordinates of parameters.
     pub fn point(&self, params: &Params<f64>) -> [f64; D] {
-        let ln = |x: f64| if x > 0.0 { Real::ln(x) } else { f64::NEG_INFINITY };
+        let ln = |x: f64| {
+            if x > 0.0 {
+                Real::portable_ln(x)
+            } else {
+                f64::NEG_INFINITY
+            }
+        };
         let mu = if params.m > 0.0 {
             1.0 / (params.m * params.m)
         } else {
@@ -177,7 +183,7 @@ impl Scene {
                 .map(|&c| fresnel(c, params.n, params.kappa).0);
             ln(rho) + ln(f.unwrap_or(0.0)) + ln(mu)
         };
-        let index = |x: f64| Real::ln(x.max(1.0));
+        let index = |x: f64| Real::portable_ln(x.max(1.0));
         [
             ln(params.rho_d),
             lobe(0, params.rho_s),
@@ -215,7 +221,7 @@ impl Scene {
 
 fn terms_of(geometry: &Geometry<f64>, ln_f: f64, cosines: &[f64]) -> [Term; PARTS] {
     let term = |factor: f64, slope: f64, cosine: usize| {
-        let factor = Real::ln(factor);
+        let factor = Real::portable_ln(factor);
         Term {
             level: factor - ln_f,
             size: factor.abs() + ln_f.abs(),

@@ -124,10 +124,10 @@ fn sum_at(lines: &[Line], z: &[f64; D]) -> Sum {
 fn line(cell: &Cell, row: &Row, reach: &Reach, parts: &[Part; PARTS], middle: &[f64; D], h: &[f64; D]) -> Line {
     let of = exponents(cell, row, parts, middle, h);
     let top = of.at[0].max(of.at[1]).max(of.at[2]);
-    let e = of.at.map(|x| Real::exp(x - top));
+    let e = of.at.map(|x| Real::portable_exp(x - top));
     let total = e[0] + e[1] + e[2];
     let share = e.map(|e| e / total);
-    let at = top + Real::ln(total);
+    let at = top + Real::portable_ln(total);
     let pivot = (0..PARTS).fold(0, |best, k| if share[k] > share[best] { k } else { best });
     let mut slope = [0.0; D];
     let (mut below, mut above, mut own, mut size) = (0.0, 0.0f64, 0.0, 0.0);

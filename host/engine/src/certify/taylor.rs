@@ -177,9 +177,9 @@ impl Expansion {
         let h = self.half;
         let w = row.weight2;
         let top = of.at[0].max(of.at[1]).max(of.at[2]);
-        let e = of.at.map(|x| Real::exp(x - top));
+        let e = of.at.map(|x| Real::portable_exp(x - top));
         let total = e[0] + e[1] + e[2];
-        let bright = top + Real::ln(total);
+        let bright = top + Real::portable_ln(total);
         let share = e.map(|e| e / total);
         let ln_share = of.at.map(|x| x - bright);
         // How far the exponents of two parts can move apart in the box, and what of that is not linear.

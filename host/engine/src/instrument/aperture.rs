@@ -23,9 +23,9 @@ const LEGENDRE: [(f64, f64); RINGS] = [
 /// A detector measures the power in its solid angle, and the BRDF is that over the cosine in its middle: the shares are those of the projected solid angle, 1 in all where none is below the horizon.
 /// In the plane of incidence one side stands for both.
 pub fn directions(sample: &Sample<f64>, half_angle: f64) -> Vec<(Sample<f64>, f64)> {
-    let (sin_s, cos_s) = Real::sin_cos(sample.theta_s);
-    let in_plane = Real::sin_cos(sample.delta_phi).0.abs() < 1e-12;
-    let depth = 1.0 - Real::sin_cos(half_angle).1;
+    let (sin_s, cos_s) = Real::portable_sin_cos(sample.theta_s);
+    let in_plane = Real::portable_sin_cos(sample.delta_phi).0.abs() < 1e-12;
+    let depth = 1.0 - Real::portable_sin_cos(half_angle).1;
     let mean_cos = 1.0 - 0.5 * depth;
     let count = if in_plane { HALF } else { 2 * HALF };
     let mut all = Vec::with_capacity(RINGS * count);
@@ -33,7 +33,7 @@ pub fn directions(sample: &Sample<f64>, half_angle: f64) -> Vec<(Sample<f64>, f6
         let down = 0.5 * depth * (1.0 + node);
         let (sin_r, cos_r) = ((down * (2.0 - down)).sqrt(), 1.0 - down);
         for k in 0..count {
-            let (sin_a, cos_a) = Real::sin_cos((k as f64 + 0.5) * f64::PI / HALF as f64);
+            let (sin_a, cos_a) = Real::portable_sin_cos((k as f64 + 0.5) * f64::PI / HALF as f64);
             let x = sin_s * cos_r + cos_s * sin_r * cos_a;
             let y = sin_r * sin_a;
             let z = cos_s * cos_r - sin_s * sin_r * cos_a;

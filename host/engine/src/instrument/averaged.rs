@@ -49,7 +49,7 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
             Ok(Part {
                 blocks: blocks_of::<f64, M, P, C>(&directions)?,
                 shares: shares.collect(),
-                ln_f: Real::ln(sample.brdf),
+                ln_f: Real::portable_ln(sample.brdf),
                 weight: sample.weight.abs(),
             })
         };
@@ -81,7 +81,7 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
             let shares = Pack::<f64, GROUP>::gather(&part.shares[place / GROUPS], place % GROUPS).0;
             for half in 0..GROUP {
                 if shares[half] > 0.0 {
-                    let f = shares[half] * Real::exp(row.ln_f.0[half] - top);
+                    let f = shares[half] * Real::portable_exp(row.ln_f.0[half] - top);
                     sum += f;
                     for k in 0..P {
                         if GRADIENT {
@@ -91,7 +91,7 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
                 }
             }
         }
-        let residual = part.weight * (top + Real::ln(sum) - part.ln_f);
+        let residual = part.weight * (top + Real::portable_ln(sum) - part.ln_f);
         (residual, slopes.map(|slope| part.weight * slope / sum))
     }
 }

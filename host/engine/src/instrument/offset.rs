@@ -32,8 +32,8 @@ pub struct Offset {
 
 /// Scattering angle, radians, positive forward, of a sample in the plane of incidence; none of another.
 pub fn signed(sample: &Sample<f64>) -> Option<f64> {
-    let (sin_phi, cos_phi) = Real::sin_cos(sample.delta_phi);
-    let across = Real::sin_cos(sample.theta_s).0 * sin_phi;
+    let (sin_phi, cos_phi) = Real::portable_sin_cos(sample.delta_phi);
+    let across = Real::portable_sin_cos(sample.theta_s).0 * sin_phi;
     (across.abs() <= IN_PLANE).then_some(if cos_phi < 0.0 { sample.theta_s } else { -sample.theta_s })
 }
 

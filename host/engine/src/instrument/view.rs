@@ -42,8 +42,11 @@ impl View {
             .filter_map(|(at, share)| Some((self.material.ln_f(at)?, *share)));
         let parts: Vec<(f64, f64)> = parts.collect();
         let top = parts.iter().map(|part| part.0).fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = parts.iter().map(|(ln_f, share)| share * Real::exp(ln_f - top)).sum();
-        (sum > 0.0).then(|| top + Real::ln(sum))
+        let sum: f64 = parts
+            .iter()
+            .map(|(ln_f, share)| share * Real::portable_exp(ln_f - top))
+            .sum();
+        (sum > 0.0).then(|| top + Real::portable_ln(sum))
     }
 
     /// The same, and its derivatives by the parameters.
@@ -56,7 +59,7 @@ impl View {
         let mut sum = Values::from_fn(self.material.values.len(), |_| 0.0);
         for (at, share) in directions(&sample, self.aperture) {
             if let Some((part, gradient)) = self.material.gradient(&at) {
-                let share = share * Real::exp(part - ln_f);
+                let share = share * Real::portable_exp(part - ln_f);
                 sum.iter_mut()
                     .zip(gradient.iter())
                     .for_each(|(sum, slope)| *sum += share * slope);
@@ -67,6 +70,6 @@ impl View {
 
     /// Model less measurement in ln f, times the sample's weight; none beyond the horizon.
     pub fn residual(&self, sample: &Sample<f64>) -> Option<f64> {
-        Some(sample.weight * (self.ln_f(sample)? - Real::ln(sample.brdf)))
+        Some(sample.weight * (self.ln_f(sample)? - Real::portable_ln(sample.brdf)))
     }
 }

@@ -56,7 +56,7 @@ fn peak(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     }
     // Degrees squared, and the slope of ln cos per degree.
     let sigma2 = -1.0 / (2.0 * curvature);
-    let (sin, cos) = Real::sin_cos(vertex.to_radians());
+    let (sin, cos) = Real::portable_sin_cos(vertex.to_radians());
     let moved = sigma2 * (sin / cos).to_radians();
     (vertex.abs() < 85.0).then_some((vertex - moved, step))
 }
@@ -156,7 +156,7 @@ mod tests {
             let of = |theta_i: f64| {
                 (-80..=80).map(move |theta_s| {
                     let away = (f64::from(theta_s) - theta_i - shift(theta_i)) / 5.0;
-                    let brdf = 0.02 + Real::exp(-0.5 * away * away);
+                    let brdf = 0.02 + Real::portable_exp(-0.5 * away * away);
                     Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), brdf)
                 })
             };

@@ -78,14 +78,14 @@ pub fn nodes(lines: &[Vec<Point>], degrees_of_freedom: usize, evidence: f64) -> 
     }
     let list: Vec<_> = all(1, &PARTS).into_iter().map(judged).chain([null]).collect();
     // Independence counts as much as all else together.
-    let others = Real::ln(list.len() as f64 - 1.0);
+    let others = Real::portable_ln(list.len() as f64 - 1.0);
     let best = list.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
     let share = |(process, (ln, _)): &(Process, (f64, f64))| {
         let more = match process.part {
             0.0 => others,
-            _ => LONGER * Real::ln(process.length / lengths[0]) - if process.smooth { RARE } else { 0.0 },
+            _ => LONGER * Real::portable_ln(process.length / lengths[0]) - if process.smooth { RARE } else { 0.0 },
         };
-        Real::exp(ln - best + more)
+        Real::portable_exp(ln - best + more)
     };
     let total: f64 = list.iter().map(share).sum();
     let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
@@ -147,7 +147,7 @@ pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64,
             ];
             let variance = [part - known[0], -known[1]];
             let total = variance[0] + 1.0 - part;
-            ln_determinant += Real::ln(total);
+            ln_determinant += Real::portable_ln(total);
             let gain = variance.map(|x| x / total);
             let column = |k: usize| if k == columns { point.residual } else { point.row[k] };
             for k in 0..=columns {
@@ -173,9 +173,9 @@ pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64,
     }
     // The last row of the root of all sums holds what of the residuals is beyond J.
     let root = cholesky(&sums);
-    let ln_columns: f64 = (0..columns).map(|k| 2.0 * Real::ln(root[k][k])).sum();
+    let ln_columns: f64 = (0..columns).map(|k| 2.0 * Real::portable_ln(root[k][k])).sum();
     let rest = root[columns][columns] * root[columns][columns];
-    let ln = -0.5 * (degrees * Real::ln(rest) + ln_determinant + ln_columns);
+    let ln = -0.5 * (degrees * Real::portable_ln(rest) + ln_determinant + ln_columns);
     (ln, rest / degrees)
 }
 
@@ -183,10 +183,13 @@ pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64,
 fn step(angle: f64, process: Process) -> [[f64; 2]; 2] {
     if process.smooth {
         let x = SMOOTH * angle / process.length;
-        let e = Real::exp(-x.min(700.0));
+        let e = Real::portable_exp(-x.min(700.0));
         [[e * (1.0 + x), e * x], [-e * x, e * (1.0 - x)]]
     } else {
-        [[Real::exp(-(angle / process.length).min(700.0)), 0.0], [0.0; 2]]
+        [
+            [Real::portable_exp(-(angle / process.length).min(700.0)), 0.0],
+            [0.0; 2],
+        ]
     }
 }
 

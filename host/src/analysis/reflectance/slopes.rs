@@ -33,7 +33,7 @@ struct Facets {
 /// With d omega_s = 4 cos theta_d d omega_h and d omega_h = cos^3 theta_h d^2 slope, the surface lobe (Eq. 8, 14) leaves `rho_s F G cos theta_d / (cos theta_i cos theta_h)` to be averaged over the Gaussian of the slopes, and the volume lobe `4 rho_v F cos theta_s cos theta_d / cos theta_h`.
 /// Only facets that send light above the horizon count.
 pub fn of_eq_14([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (f64, Values) {
-    let (sin_i, cos_i) = Real::sin_cos(theta_i);
+    let (sin_i, cos_i) = Real::portable_sin_cos(theta_i);
     let facets = Facets {
         sin_i,
         cos_i,
@@ -119,7 +119,7 @@ impl Facets {
             return [0.0; 8];
         }
         // For both halves across.
-        let share = 2.0 * Real::exp(-r2) / (PI * self.m * self.m) * cos_d / cos_h;
+        let share = 2.0 * Real::portable_exp(-r2) / (PI * self.m * self.m) * cos_d / cos_h;
         let masking = (2.0 * cos_h * self.cos_i.min(cos_s) / cos_d).min(1.0);
         let (f, d_n, mut d_kappa) = fresnel(cos_d.min(1.0), self.n, self.kappa);
         if self.kappa == 0.0 {
@@ -157,7 +157,7 @@ fn cubic(c2: f64, c1: f64, c0: f64) -> Vec<f64> {
     if less < 0.0 {
         let root = Real::sqrt(q);
         let angle = libm::acos((r / (q * root)).clamp(-1.0, 1.0));
-        let one = |turn: f64| -2.0 * root * Real::sin_cos((angle + 2.0 * PI * turn) / 3.0).1 - c2 / 3.0;
+        let one = |turn: f64| -2.0 * root * Real::portable_sin_cos((angle + 2.0 * PI * turn) / 3.0).1 - c2 / 3.0;
         vec![one(0.0), one(1.0), one(2.0)]
     } else {
         let a = -libm::copysign(libm::cbrt(r.abs() + Real::sqrt(less)), r);

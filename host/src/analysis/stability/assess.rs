@@ -114,7 +114,7 @@ pub fn assess(name: &str, samples: &[Sample<f64>], options: &FitOptions) -> Resu
             .collect()
     };
     let (double_curve, single_curve) = (curve(&double.material()), curve(&single.material()));
-    let measured: Vec<f64> = samples.iter().map(|s| s.weight * Real::ln(s.brdf)).collect();
+    let measured: Vec<f64> = samples.iter().map(|s| s.weight * Real::portable_ln(s.brdf)).collect();
     let fit = Precisions {
         f64: ended(&double, sum_of_squares(&double_curve, &measured)),
         f32: ended(&single, sum_of_squares(&single_curve, &measured)),

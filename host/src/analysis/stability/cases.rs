@@ -123,7 +123,7 @@ fn generate(scene: &Scene) -> Vec<Sample<f64>> {
         let (theta_i, theta_s) = (scene.theta_i_deg.to_radians(), degrees.to_radians());
         let sample = Sample::in_plane(theta_i, theta_s, 1.0);
         let factor = 1.0 + NOISE * (2.0 * f64::unit(noise.next_u64()) - 1.0);
-        let brdf = Real::exp(material.ln_f(&sample)?) * factor;
+        let brdf = Real::portable_exp(material.ln_f(&sample)?) * factor;
         Some(Sample { brdf, ..sample })
     };
     degrees.into_iter().filter_map(&mut sample).collect()

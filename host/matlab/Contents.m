@@ -1,6 +1,6 @@
 % brdfit: parameters of BRDF models from scatterometer scans
 %
-%   brdfit_fit            - the parameters at the global optimum, their minima, and the residuals
+%   brdfit_fit            - the parameters at the global optimum, their minima, their standard errors, and the residuals
 %   brdfit_brdf           - the BRDF of a model at any angles
 %   brdfit_build          - compiles the MEX from the static library of core/capi
 %

@@ -16,7 +16,13 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %   residual  ln of the model less ln brdf, times brdf / sigma if there is a sigma; of the size of brdf
 %   exitflag  1: converged, 2: converged as far as rounding allows, 0: too many evaluations, as in lsqcurvefit
 %   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17),
-%             .model (its name), .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits)
+%             .model (its name), .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits),
+%             .stderr (standard errors of x; 0 where absent, held or on a bound, very large where nothing is known),
+%             .correlation (6 x 6), .scale (standard deviation of a residual), .condition (of the scaled J'J; above about
+%             1e6 some parameters are known only together)
+%
+%   The standard errors are for residuals that are independent, as nlparci has them. Where residuals wander along the
+%   angle, as those of most measured scans do, the errors are larger: the program and the Python package estimate that.
 %
 %   options is a struct with any of these fields; empty ones count as not given:
 %   delta_phi    azimuth of scattering less that of incidence in degrees; 180, in plane
@@ -82,10 +88,11 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     end
     resnorm = Inf;
     for k = 1:numel(models)
-        [fitted{1:5}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k})], ...
+        [fitted{1:5 + (nargout > 4)}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k})], ...
             bound('lb', settings.lb), bound('ub', settings.ub));
         if fitted{2} < resnorm
-            [x, resnorm, stop, passes, minima] = fitted{:};
+            [x, resnorm, stop, passes, minima] = fitted{1:5};
+            known = fitted{end};
             model = models{k};
         end
     end
@@ -101,6 +108,10 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
         output = struct('iterations', passes(1), 'funcCount', passes(2) + passes(3), ...
             'algorithm', 'global search with bounded Levenberg-Marquardt', 'message', messages{stop}, ...
             'mse2', resnorm / numel(f)^2, 'model', model);
+        output.stderr = known(:, 1).';
+        output.correlation = known(:, 2:7);
+        output.scale = known(1, 8);
+        output.condition = known(2, 8);
         output.minima = struct('x', {}, 'resnorm', {}, 'mse2', {}, 'hits', {});
         for k = 1:size(minima, 2)
             output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k), ...

@@ -1,12 +1,13 @@
 /*
  * The MEX behind brdfit_fit.m and brdfit_brdf.m, which check the form of what they give to it:
  *
- *   [x, resnorm, stop, passes, minima] = brdfit_mex ("fit", samples, settings, lb, ub)
+ *   [x, resnorm, stop, passes, minima, known] = brdfit_mex ("fit", samples, settings, lb, ub)
  *   f = brdfit_mex ("brdf", directions, x, model)
  *
  * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, weight. settings is [seed, terms,
  * candidates, max_passes, cost_tolerance, step_tolerance, model], where NaN stands for the usual value. passes is [of the
- * best fit, without derivatives, with derivatives], and minima 8 x k: parameters, cost, hits. directions is 3 x n.
+ * best fit, without derivatives, with derivatives], minima 8 x k: parameters, cost, hits, and known 6 x 8: standard
+ * errors, correlations, [scale; condition; 0; 0; 0; 0]. directions is 3 x n.
  * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
  */
 #include <stdint.h>
@@ -126,6 +127,16 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
             column[6] = minima[i].cost;
             column[7] = minima[i].hits;
         }
+    }
+    if (outputs > 5) {
+        brdfit_uncertainty_f64 known;
+        check(brdfit_uncertainty_at_f64(&scan, &options, &found.best.params, &known));
+        output[5] = mxCreateDoubleMatrix(6, 8, mxREAL);
+        double *values = mxGetPr(output[5]);
+        put_params(values, &known.standard_errors);
+        memcpy(values + 6, known.correlations, sizeof known.correlations);
+        values[42] = known.scale;
+        values[43] = known.condition;
     }
 }
 

@@ -9,6 +9,7 @@ pub mod mitsuba;
 pub mod model;
 pub mod native;
 pub mod openmaterial;
+pub mod openpbr;
 pub mod refit;
 pub mod renderers;
 pub mod rgl;

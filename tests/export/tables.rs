@@ -118,6 +118,28 @@ fn three_results_are_one_colour() {
     );
     let ior = material["extensions"]["KHR_materials_ior"]["ior"].as_f64().unwrap();
     assert!((1.0..2.0).contains(&ior), "{ior}");
+    let surface = run("openpbr", "3,2,1");
+    assert!(
+        surface.errors.starts_with("against the fitted model -"),
+        "{}",
+        surface.errors
+    );
+    let input = |name: &str| {
+        let line = surface
+            .output
+            .lines()
+            .find(|line| line.contains(&format!("name=\"{name}\"")));
+        let value = line.and_then(|line| line.split("value=\"").nth(1)?.split('"').next());
+        let value = value.unwrap_or_else(|| panic!("{name}: {}", surface.output));
+        value
+            .split(", ")
+            .map(|part| part.parse().unwrap())
+            .collect::<Vec<f64>>()
+    };
+    let base = input("base_color");
+    assert!(base[0] > 2.0 * base[1] && base[1] > 1.5 * base[2], "{base:?}");
+    assert!((0.0..=1.0).contains(&input("base_metalness")[0]) && (0.1..1.0).contains(&input("specular_roughness")[0]));
+    assert!((1.0..2.0).contains(&input("specular_ior")[0]));
     for (to, index, what) in [
         ("gltf", "3,2", "a colour has one result or three, not 2"),
         ("zemax", "3,2,1", "there are 3 results"),

@@ -29,6 +29,8 @@ pub enum Form {
     Gltf,
     /// MaterialX, the nearest gltf_pbr
     Materialx,
+    /// MaterialX, the nearest OpenPBR surface
+    Openpbr,
     /// RGL tensor file for Mitsuba's measured BSDF, .bsdf
     Rgl,
     /// Constants for C
@@ -57,6 +59,7 @@ pub fn write(form: Form, models: &[Model], wavelength: Option<f64>) -> Result<(V
         Form::MitsubaPrincipled => with_deviation(renderers::mitsuba_principled(models)?),
         Form::Gltf => with_deviation(renderers::gltf(models)?),
         Form::Materialx => with_deviation(renderers::materialx(models)?),
+        Form::Openpbr => with_deviation(renderers::openpbr(models)?),
         Form::Rgl => return Ok((rgl::write(&by_length(wavelength, models)?), None)),
         Form::Zemax => {
             let model = one()?;

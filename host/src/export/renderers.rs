@@ -1,8 +1,9 @@
-//! Materials of renderers: glTF, MaterialX, and Mitsuba's `principled`, whose parameters are fitted to the model.
+//! Materials of renderers: glTF, OpenPBR, MaterialX, and Mitsuba's `principled`, whose parameters are fitted to the model.
 
 use serde_json::json;
 
 use super::model::{Model, word};
+use super::openpbr::OPEN_PBR;
 use super::refit::{Refit, refit};
 use super::targets::{GLTF, PRINCIPLED};
 use crate::error::Error;
@@ -66,18 +67,34 @@ pub fn gltf(models: &[Model]) -> Result<(String, String), Error> {
 /// # Errors
 /// The number of models is not that of a colour.
 pub fn materialx(models: &[Model]) -> Result<(String, String), Error> {
-    let surface = surface(models, &GLTF)?;
+    let inputs = ["metallic", "roughness", "ior"];
+    Ok(document("1.38", "gltf_pbr", inputs, models, surface(models, &GLTF)?))
+}
+
+/// A MaterialX document with an `open_pbr_surface`, and how far it is off.
+///
+/// # Errors
+/// The number of models is not that of a colour.
+pub fn openpbr(models: &[Model]) -> Result<(String, String), Error> {
+    let inputs = ["base_metalness", "specular_roughness", "specular_ior"];
+    let surface = surface(models, &OPEN_PBR)?;
+    Ok(document("1.39", "open_pbr_surface", inputs, models, surface))
+}
+
+/// A MaterialX document of this version with this node, whose inputs for metallic, roughness and index have these names.
+fn document(version: &str, node: &str, inputs: [&str; 3], models: &[Model], surface: Surface) -> (String, String) {
     let [red, green, blue] = surface.base;
     let name = word(&models[0].name);
+    let [metallic, roughness, ior] = inputs;
     // Two hyphens would end the comment.
     let comment = format!("{}; {}", origins(models), surface.deviation).replace("--", "- -");
     let text = format!(
-        "<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n  <!-- {} -->\n  \
-         <gltf_pbr name=\"{name}_surface\" type=\"surfaceshader\">\n    \
+        "<?xml version=\"1.0\"?>\n<materialx version=\"{version}\" colorspace=\"lin_rec709\">\n  <!-- {} -->\n  \
+         <{node} name=\"{name}_surface\" type=\"surfaceshader\">\n    \
          <input name=\"base_color\" type=\"color3\" value=\"{red:?}, {green:?}, {blue:?}\" />\n    \
-         <input name=\"metallic\" type=\"float\" value=\"{:?}\" />\n    \
-         <input name=\"roughness\" type=\"float\" value=\"{:?}\" />\n    \
-         <input name=\"ior\" type=\"float\" value=\"{:?}\" />\n  </gltf_pbr>\n  \
+         <input name=\"{metallic}\" type=\"float\" value=\"{:?}\" />\n    \
+         <input name=\"{roughness}\" type=\"float\" value=\"{:?}\" />\n    \
+         <input name=\"{ior}\" type=\"float\" value=\"{:?}\" />\n  </{node}>\n  \
          <surfacematerial name=\"{name}\" type=\"material\">\n    \
          <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"{name}_surface\" />\n  \
          </surfacematerial>\n</materialx>\n",
@@ -86,7 +103,7 @@ pub fn materialx(models: &[Model]) -> Result<(String, String), Error> {
         surface.roughness,
         surface.n,
     );
-    Ok((text, surface.deviation))
+    (text, surface.deviation)
 }
 
 /// A Python module with the dictionary of Mitsuba 3's `principled`, and how far it is off.

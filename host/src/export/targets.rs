@@ -29,10 +29,10 @@ pub static PRINCIPLED: Model = Model::own::<Own<Principled>, 4, 8>("principled",
 pub static NATIVE: Model =
     Model::own::<Own<Native>, 5, 8>("roughconductor", "Mitsuba's roughconductor and diffuse", "Mitsuba 3");
 
-const BASE: Parameter = Parameter::new("base", "c", Role::Shape, 1.0).spread(0.01, 1.0);
-const METALLIC: Parameter = Parameter::new("metallic", "M", Role::Shape, 1.0).spread(0.05, 1.0);
+pub(super) const BASE: Parameter = Parameter::new("base", "c", Role::Shape, 1.0).spread(0.01, 1.0);
+pub(super) const METALLIC: Parameter = Parameter::new("metallic", "M", Role::Shape, 1.0).spread(0.05, 1.0);
 /// Mitsuba holds alpha at 0.001 at least.
-const ROUGHNESS: Parameter = Parameter::new("roughness", "r", Role::Shape, 1.0)
+pub(super) const ROUGHNESS: Parameter = Parameter::new("roughness", "r", Role::Shape, 1.0)
     .bounds(0.032, 1.0)
     .domain(0.032, 1.0)
     .spread(0.05, 1.0);
@@ -93,7 +93,7 @@ impl Formula<5> for Native {
     }
 }
 
-const fn index(most: f64) -> Parameter {
+pub(super) const fn index(most: f64) -> Parameter {
     let largest = if most < 5.0 { most } else { 5.0 };
     Parameter::new("n", "n", Role::Index, most)
         .bounds(1.0, most)
@@ -125,7 +125,7 @@ fn beckmann_masking<R: Real, N: Number<R>>(m: N, cos: R, sin: R) -> N {
 }
 
 /// Fresnel's reflectance of unpolarised light at an index n - i kappa.
-fn fresnel<R: Real, N: Number<R>>(n: N, kappa2: N, cos: R) -> N {
+pub(super) fn fresnel<R: Real, N: Number<R>>(n: N, kappa2: N, cos: R) -> N {
     let (c2, s2) = (cos * cos, R::ONE - cos * cos);
     let n2 = n.squared();
     let real = n2 - kappa2 - s2;
@@ -137,11 +137,11 @@ fn fresnel<R: Real, N: Number<R>>(n: N, kappa2: N, cos: R) -> N {
 }
 
 /// Schlick's rise from `normal` to 1.
-fn schlick<R: Real, N: Number<R>>(normal: N, grazing: R) -> N {
+pub(super) fn schlick<R: Real, N: Number<R>>(normal: N, grazing: R) -> N {
     normal * (R::ONE - grazing) + grazing
 }
 
-fn power5<R: Real>(x: R) -> R {
+pub(super) fn power5<R: Real>(x: R) -> R {
     let x2 = x * x;
     x2 * x2 * x
 }

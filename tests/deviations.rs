@@ -102,3 +102,118 @@ fn weights_are_of_the_fitted_f() {
     );
     assert_eq!(fit["deviations"], "used");
 }
+
+fn json(arguments: &[&str]) -> Value {
+    let ran = program::brdfit(&[arguments, &["--format", "json"]].concat(), b"");
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    serde_json::from_str(&ran.output).unwrap()
+}
+
+fn relative(a: &Value, b: &Value) -> f64 {
+    (a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs()
+}
+
+/// The file tells half of the noise.
+#[test]
+fn absolute_sigma_takes_the_errors_of_the_file_whatever_chi2_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let half = |line: &str| match line.rsplit_once(',') {
+        Some((rest, sigma)) if sigma.parse::<f64>().is_ok() => {
+            format!("{rest},{}\n", 0.5 * sigma.parse::<f64>().unwrap())
+        }
+        _ => format!("{line}\n"),
+    };
+    let text: String = file(0.0, 0.1, "rel_sigma", 3).lines().map(half).collect();
+    let scan = program::write(&folder, "scan.csv", text);
+    let terms = ["--terms", "diffuse,surface", "--fix", "n=1.5"];
+    let usual = json(&[&["fit", scan.as_str()], &terms[..]].concat());
+    let absolute = json(&[&["fit", scan.as_str(), "--absolute-sigma"], &terms[..]].concat());
+    assert_eq!(
+        (&usual["deviations"], &absolute["deviations"]),
+        (&"refuted".into(), &"absolute".into())
+    );
+    assert_eq!(usual["parameters"], absolute["parameters"]);
+    // By the root of chi^2 over its degrees of freedom.
+    let ratio = (usual["chi2"].as_f64().unwrap() / usual["uncertainty"]["degrees_of_freedom"].as_f64().unwrap()).sqrt();
+    assert!((1.8..2.2).contains(&ratio), "{ratio}");
+    for name in ["rho_d", "m"] {
+        let stderr = |fit: &Value| fit["uncertainty"]["stderr"][name].as_f64().unwrap();
+        assert!(
+            (stderr(&usual) / stderr(&absolute) / ratio - 1.0).abs() < 1e-9,
+            "{name}"
+        );
+    }
+    let page = program::brdfit(&[&["fit", scan.as_str(), "--absolute-sigma"], &terms[..]].concat(), b"").output;
+    assert!(page.contains("as asked; residuals are"), "{page}");
+    // What the file does not tell cannot be used.
+    let folder = tempfile::tempdir().unwrap();
+    let plain: String = file(0.0, 0.1, "rel_sigma", 3)
+        .lines()
+        .map(|line| line.rsplit_once(',').unwrap().0.to_string() + "\n")
+        .collect();
+    let scan = program::write(&folder, "scan.csv", plain);
+    let message = program::fail(&["fit", &scan, "--absolute-sigma"]);
+    assert!(message.contains("no standard deviations were read"), "{message}");
+}
+
+/// Symmetric noise of 20 % takes 2 % from ln f; the mean of 30 copies is known to 0.3 %.
+#[test]
+fn the_bias_of_the_logarithm_is_corrected_on_request() {
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    let wanted = Wanted::One(options);
+    let mean = |corrected: bool| {
+        let copies = 30;
+        let one = |copy| {
+            let text = file(0.0, 0.2, "rel_sigma", copy);
+            let text = text.replace("rel_sigma", "not_used");
+            let read = ReadOptions {
+                correct_ln_bias: corrected,
+                ..ReadOptions::default()
+            };
+            let measurement = parse("scan.csv", text.as_bytes(), &read).unwrap().remove(0);
+            assert_eq!(measurement.sigma_ln, None);
+            let measurement = settled(measurement, &wanted);
+            assert_eq!(
+                measurement
+                    .about
+                    .notes
+                    .iter()
+                    .any(|note| note.starts_with("ln BRDF is raised")),
+                corrected
+            );
+            fit(&measurement, &wanted).unwrap().outcome.params[0]
+        };
+        (0..copies).map(one).sum::<f64>() / copies as f64 / TRUTH[0] - 1.0
+    };
+    let (low, right) = (mean(false), mean(true));
+    println!("rho_d {low:+.4} without, {right:+.4} with the correction");
+    assert!((-0.03..-0.015).contains(&low), "{low}");
+    assert!(right.abs() < 0.006, "{right}");
+}
+
+/// One scan has the same fit in `fit`, `compare` and `joint`, whose weights are of the fitted f too.
+#[test]
+fn every_command_weighs_by_the_fitted_f() {
+    let path = data("fit/sigma20.csv");
+    let scan = path.to_str().unwrap();
+    let alone = json(&["fit", scan]);
+    let compared = json(&["compare", scan, "--models", "beckmann"]);
+    let folder = tempfile::tempdir().unwrap();
+    let copy = program::write(&folder, "copy.csv", std::fs::read(&path).unwrap());
+    let both = json(&["joint", scan, &copy, "--share", "rho_d,rho_s,rho_v,m,n,kappa"]);
+    assert!(
+        relative(&compared["models"][0]["mse2"], &alone["mse2"]) < 1e-9,
+        "{compared:#}"
+    );
+    let cost = both["cost"].as_f64().unwrap() / 2.0;
+    let samples = alone["samples"].as_f64().unwrap();
+    let expected = alone["mse2"].as_f64().unwrap() * samples * samples;
+    assert!((cost / expected - 1.0).abs() < 1e-9, "{cost} {expected}");
+    for name in ["rho_d", "m"] {
+        assert!(relative(&both["scans"][0]["parameters"][name], &alone["parameters"][name]) < 1e-6);
+    }
+}

@@ -136,9 +136,33 @@ fn a_run_that_stands_apart_is_named() {
         "{}",
         ran.output
     );
+    assert!(
+        ran.output
+            .contains("Run 7 does not agree with the others within their own expanded errors in rho_d"),
+        "{}",
+        ran.output
+    );
+    // The page has the same sentences and numbers, and is the same each time.
+    let page = |files: &[&str]| brdfit(&[files, &["--format", "html"]].concat(), b"").output;
+    let html = page(&arguments);
+    for part in [
+        "Run 7 does not agree with the others",
+        "run 7 in rho_d",
+        "type A",
+        "SHA-256",
+        "brdfit joint --repeats",
+    ] {
+        assert!(html.contains(part), "{part}: {html}");
+    }
+    assert_eq!(html.matches("<tr>").count(), html.matches("</tr>").count());
+    assert_eq!(page(&arguments), html);
+    assert!(fail(&["joint", &files[0], &files[1], "--format", "html"]).contains("--repeats"));
     arguments.extend(["--format", "json"]);
     let found: Value = serde_json::from_str(&brdfit(&arguments, b"").output).unwrap();
     let rho_d = &found["quantities"][0];
+    assert_eq!(rho_d["runs_that_disagree"], serde_json::json!([7]));
+    let mean = rho_d["budget"]["mean"].as_f64().unwrap();
+    assert!(html.contains(&format!("{mean:.4}")), "{mean}");
     assert_eq!(
         (rho_d["name"].as_str(), &rho_d["budget"]["run_apart"]),
         (Some("rho_d"), &7.into())

@@ -146,7 +146,7 @@ fn dispatch(command: &Command, given: &[OsString], streams: &mut Streams) -> Res
         Command::Paper(arguments) => paper::run(arguments, streams),
         Command::Profile(arguments) => profile::run(arguments, streams),
         Command::Compare(arguments) => compare::run(arguments, streams),
-        Command::Joint(arguments) => joint::run(arguments, streams),
+        Command::Joint(arguments) => joint::run(arguments, given, streams),
         Command::Converge(arguments) => converge::run(arguments, streams),
         Command::Stability(arguments) => stability::run(arguments, streams),
         Command::Export(arguments) => export::run(arguments, streams),

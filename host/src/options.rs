@@ -290,13 +290,13 @@ mod tests {
         let words = "brdfit --input-format astm --column R --quantity log10-brdf --angles rad --forward negative --value-unit percent \
              --wavelength-unit per-cm --polarisation mean --columns theta_s=2,brdf=3 --split a --ignore b --repeats --theta-i=-5,20 \
              --one-scan --merl-whole --drop-invalid --mask-retro 6 --max-angle 85 --max-value 1e3 --thin 2 --coverage 2 --weights equal \
-             --sigma-floor 0.01 --weight-angle 60=0.5 --method paper --starts 7 --seed 9 --model ggx --terms auto --bounds n=1:2 \
+             --sigma-floor 0.01 --weight-angle 60=0.5 --absolute-sigma --correct-ln-bias --method paper --starts 7 --seed 9 --model ggx --terms auto --bounds n=1:2 \
              --fix kappa=0 --robust --precision f32";
         let read = r#"{"input-format": "astm", "column": ["R"], "quantity": "log10-brdf", "angles": "rad", "forward": "negative",
             "value-unit": "percent", "wavelength-unit": "per-cm", "polarisation": "mean", "columns": ["theta_s=2", "brdf=3"],
             "split": ["a"], "ignore": ["b"], "repeats": true, "theta-i": [-5, 20], "one-scan": true, "merl-whole": true,
             "drop-invalid": true, "mask-retro": 6, "max-angle": 85, "max-value": 1e3, "thin": 2, "coverage": 2, "weights": "equal",
-            "sigma-floor": 0.01, "weight-angle": ["60=0.5"]}"#;
+            "sigma-floor": 0.01, "weight-angle": ["60=0.5"], "absolute-sigma": true, "correct-ln-bias": true}"#;
         let search = r#"{"method": "paper", "starts": 7, "seed": 9, "model": "ggx", "terms": "auto", "bounds": ["n=1:2"],
             "fix": ["kappa=0"], "robust": true, "precision": "f32"}"#;
         let both = Both::try_parse_from(words.split_whitespace()).unwrap_or_else(|error| panic!("{error}"));

@@ -9,6 +9,7 @@ mod csv;
 pub mod inspect;
 pub mod json;
 pub mod profile;
+pub mod repeats;
 pub mod text;
 pub mod words;
 

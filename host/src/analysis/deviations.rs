@@ -9,6 +9,7 @@ use crate::engine::Values;
 use crate::engine::uncertainty::Uncertainty;
 use crate::input::Measurement;
 use crate::input::weight::{self, Deviation};
+use crate::number::{percent, two};
 
 /// Fits until the weights are those of the fitted f.
 const ROUNDS: usize = 5;
@@ -26,14 +27,19 @@ pub enum Verdict {
     Used,
     /// Residuals are so many times what they should be: errors are those of the residuals.
     Refuted(f64),
+    /// Errors are theirs because that was asked for; residuals are so many times what they should be.
+    Absolute(f64),
 }
 
 /// The scan with weights from its standard deviations over the f of its fit, and with values raised by what their noise takes from ln f on average.
 ///
 /// A deviation over the measured f is too small where noise made f large: such samples count too much, and f comes out high by 1.5 sigma^2 (sigma being relative).
 /// And ln f of a value with symmetric noise is low by sigma^2 / 2 on average, to second order ([`Deviation::of_ln`]).
-/// A scan without standard deviations, or that cannot be fitted, stays as it is.
+/// A scan without standard deviations stays as it is, unless its bias is to be corrected ([`unbiased`]); so does one that cannot be fitted.
 pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
+    if measurement.sigma_ln.is_none() && measurement.on_deviations.correct_ln_bias {
+        return unbiased(measurement, wanted);
+    }
     if measurement.sigma_ln.is_none() || measurement.deviations.is_empty() {
         return measurement;
     }
@@ -68,6 +74,34 @@ pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
     now
 }
 
+/// The scan with ln f raised by what symmetric noise of BRDF takes from it on average, the noise being that of the residuals of a first fit, over the weight of each sample.
+///
+/// Where the model misses the scan the residuals are not noise alone, and this raises ln f by too much.
+fn unbiased(measurement: Measurement, wanted: &Wanted) -> Measurement {
+    let Ok((_, outcome, _)) = choose::fit(&measurement.samples, wanted) else {
+        return measurement;
+    };
+    let scale = outcome.uncertainty.scale;
+    if !(scale.is_finite() && outcome.cost.is_finite()) {
+        return measurement;
+    }
+    let low = |sample: &Sample<f64>| match sample.weight {
+        0.0 => 0.0,
+        weight => Deviation::of_residual(scale / weight).of_ln(1.0).1,
+    };
+    let mut now = measurement;
+    let most = now.samples.iter().map(low).fold(0.0, f64::max);
+    for sample in &mut now.samples {
+        sample.brdf *= Real::portable_exp(low(sample));
+    }
+    now.about.notes.push(format!(
+        "ln BRDF is raised by {} at most: symmetric noise of the size of the residuals, {}, takes that from it on average",
+        two(most),
+        percent(scale)
+    ));
+    now
+}
+
 /// The samples as measured, weighted and raised by what their deviations are over `f`, and what a weight of 1 stands for.
 fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64) -> (Vec<Sample<f64>>, f64) {
     let unit = measurement.sigma_ln.unwrap_or(1.0);
@@ -85,11 +119,20 @@ fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64) -> (Vec<
     (samples, unit)
 }
 
-/// The errors that the standard deviations give, or why not; a weight of 1 stands for `sigma`.
+/// The errors that the standard deviations give, or why not; a weight of 1 stands for `sigma`, and `independent` is without the correlation of residuals.
 ///
-/// Correlated residuals are no noise, and say themselves how large errors are.
-pub fn judged(known: &Uncertainty, sigma: f64) -> (Uncertainty, Option<Verdict>) {
+/// Correlated residuals are no noise, and say themselves how large errors are, unless `absolute`.
+pub fn judged(
+    known: &Uncertainty,
+    independent: &Uncertainty,
+    sigma: f64,
+    absolute: bool,
+) -> (Uncertainty, Option<Verdict>) {
     let degrees = known.degrees_of_freedom as f64;
+    if absolute && independent.scale.is_finite() && independent.scale > 0.0 {
+        let ratio = independent.scale / sigma;
+        return (scaled(independent, ratio), Some(Verdict::Absolute(ratio)));
+    }
     if known.misfit.is_some() || known.degrees_of_freedom == 0 {
         return (known.clone(), None);
     }
@@ -98,6 +141,11 @@ pub fn judged(known: &Uncertainty, sigma: f64) -> (Uncertainty, Option<Verdict>)
     if 2.0 * below.min(1.0 - below) < REFUTED {
         return (known.clone(), Some(Verdict::Refuted(ratio)));
     }
+    (scaled(known, ratio), Some(Verdict::Used))
+}
+
+/// The errors of residuals, which are `ratio` times their standard deviations, as those of the standard deviations.
+fn scaled(known: &Uncertainty, ratio: f64) -> Uncertainty {
     let scaled = |axis: &Values| axis.iter().map(|part| part / ratio).collect::<Values>();
     // What stands behind the axes of the parameters is the calibration, which is no noise.
     let all = |axes: &[Values]| -> Vec<Values> {
@@ -108,5 +156,5 @@ pub fn judged(known: &Uncertainty, sigma: f64) -> (Uncertainty, Option<Verdict>)
     of_file.axes_lifted = all(&known.axes_lifted);
     of_file.stderr_lifted = scaled(&known.stderr_lifted);
     of_file.effective = KNOWN;
-    (of_file, Some(Verdict::Used))
+    of_file
 }

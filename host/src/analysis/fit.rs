@@ -85,11 +85,18 @@ impl FittedScan {
     /// Lobes that no sample sees are left out, and the uncertainty accounts for the correlation of the residuals.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
-        let mut outcome = known(&samples, options, outcome);
+        let mut outcome = unseen::settled(&samples, options, outcome);
+        let corrected = misfit::uncertainty(&samples, &outcome);
         let mut verdict = None;
-        if let Some(sigma) = measurement.sigma_ln {
-            (outcome.uncertainty, verdict) = deviations::judged(&outcome.uncertainty, sigma);
-        }
+        outcome.uncertainty = match measurement.sigma_ln {
+            None => corrected,
+            Some(sigma) => {
+                let absolute = measurement.on_deviations.absolute;
+                let judged = deviations::judged(&corrected, &outcome.uncertainty, sigma, absolute);
+                verdict = judged.1;
+                judged.0
+            }
+        };
         let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),

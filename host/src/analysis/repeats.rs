@@ -12,6 +12,8 @@ use super::undetermined::undetermined;
 
 /// Confidence of the expanded uncertainty.
 pub const LEVEL: f64 = 0.95;
+/// From so many degrees of freedom on t is normal in all its digits that are printed.
+const MANY: f64 = 1e6;
 /// A spread or a run is out of the ordinary at this probability.
 const UNLIKELY: f64 = 0.05;
 
@@ -28,6 +30,8 @@ pub struct Quantity {
     pub runs: Vec<Option<Value>>,
     /// Its budget; none if a run does not tell it.
     pub budget: Option<Budget>,
+    /// The runs that do not agree with most others within their own expanded errors ([`disagreeing`]).
+    pub disagree: Vec<usize>,
 }
 
 /// The budget of one quantity, in its unit.
@@ -55,6 +59,15 @@ pub struct Budget {
     pub expanded: f64,
     /// The run that stands apart from the others, by Grubbs's test; never one of two.
     pub apart: Option<usize>,
+}
+
+/// What one run gives, and how well.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// The value with the standard error from within the run.
+    pub value: Value,
+    /// The degrees of freedom of that error: fewer than samples where residuals are correlated.
+    pub degrees_of_freedom: f64,
 }
 
 impl Budget {
@@ -136,10 +149,17 @@ fn quantity(
     runs: Vec<Option<Value>>,
     scaled: f64,
 ) -> Quantity {
-    let all: Option<Vec<Value>> = runs.iter().copied().collect();
-    let within = fits.iter().map(|fit| fit.outcome.uncertainty.degrees_of_freedom).sum();
+    let told = runs.iter().zip(fits).map(|(run, fit)| {
+        Some(Told {
+            value: (*run)?,
+            degrees_of_freedom: fit.outcome.uncertainty.effective,
+        })
+    });
+    let told: Vec<Option<Told>> = told.collect();
+    let all: Option<Vec<Told>> = told.iter().copied().collect();
     Quantity {
-        budget: all.and_then(|values| budget(&values, within, scaled)),
+        budget: all.and_then(|values| budget(&values, scaled)),
+        disagree: disagreeing(&told),
         name,
         unit,
         theta_i,
@@ -147,11 +167,48 @@ fn quantity(
     }
 }
 
-/// Of two values or more, whose standard errors have so many degrees of freedom in all; `scaled` is the relative uncertainty of a common factor.
-pub fn budget(values: &[Value], degrees_within: usize, scaled: f64) -> Option<Budget> {
-    if values.len() < 2 {
+/// The runs that do not agree with most others; all of two that do not agree with each other.
+///
+/// Two runs agree if their difference is within the root of the sum of their squared expanded errors (E_n of ISO 13528 at most 1), of 95 % for all pairs together.
+/// The runs that most others agree with are kept, one by one, as long as they agree with those kept.
+pub fn disagreeing(runs: &[Option<Told>]) -> Vec<usize> {
+    let told: Vec<(usize, Told)> = (0..runs.len())
+        .filter_map(|place| Some((place, runs[place]?)))
+        .collect();
+    let pairs = 0.5 * told.len() as f64 * (told.len() as f64 - 1.0);
+    let expanded = |run: &Told| student(1.0 - UNLIKELY / pairs, run.degrees_of_freedom) * run.value.stderr;
+    let agree = |a: &Told, b: &Told| {
+        let away = (a.value.value - b.value.value).abs();
+        !(away > libm::hypot(expanded(a), expanded(b)))
+    };
+    let friends = |run: &(usize, Told)| told.iter().filter(|other| agree(&run.1, &other.1)).count();
+    let mut order: Vec<(usize, Told)> = told.clone();
+    order.sort_by_key(|run| std::cmp::Reverse(friends(run)));
+    let mut kept: Vec<Told> = Vec::new();
+    let mut apart = Vec::new();
+    for (place, run) in order {
+        if kept.iter().all(|other| agree(&run, other)) {
+            kept.push(run);
+        } else {
+            apart.push(place);
+        }
+    }
+    // Nobody knows which of two is right.
+    if kept.len() == 1 && !apart.is_empty() {
+        return told.into_iter().map(|(place, _)| place).collect();
+    }
+    apart.sort_unstable();
+    apart
+}
+
+/// Of two values or more; `scaled` is the relative uncertainty of a common factor.
+pub fn budget(told: &[Told], scaled: f64) -> Option<Budget> {
+    if told.len() < 2 {
         return None;
     }
+    let values: Vec<Value> = told.iter().map(|run| run.value).collect();
+    let values = &values[..];
+    let degrees_within: f64 = told.iter().map(|run| run.degrees_of_freedom.min(MANY)).sum();
     let count = values.len() as f64;
     let mean = values.iter().map(|value| value.value).sum::<f64>() / count;
     let squares = values.iter().map(|value| (value.value - mean) * (value.value - mean));
@@ -168,7 +225,7 @@ pub fn budget(values: &[Value], degrees_within: usize, scaled: f64) -> Option<Bu
         between,
         within,
         by_chance: if ratio.is_finite() {
-            above_f(ratio, count - 1.0, degrees_within.max(1) as f64).unwrap_or(1.0)
+            above_f(ratio, count - 1.0, degrees_within.max(1.0)).unwrap_or(1.0)
         } else {
             0.0
         },
@@ -197,22 +254,48 @@ fn grubbs(values: &[Value], mean: f64, deviation: f64) -> Option<usize> {
 
 /// [`within_t`], whose t is normal in all its digits that are printed from a million degrees of freedom on.
 fn student(level: f64, degrees_of_freedom: f64) -> f64 {
-    within_t(level, degrees_of_freedom.min(1e6))
+    within_t(level, degrees_of_freedom.min(MANY))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn values(list: &[f64], stderr: f64) -> Vec<Value> {
-        list.iter().map(|&value| Value { value, stderr }).collect()
+    fn values(list: &[f64], stderr: f64) -> Vec<Told> {
+        let one = |&value| Told {
+            value: Value { value, stderr },
+            degrees_of_freedom: 100.0,
+        };
+        list.iter().map(one).collect()
+    }
+
+    #[test]
+    fn runs_that_do_not_agree_are_those_beyond_their_expanded_errors() {
+        let of = |list: &[f64], stderr: f64| {
+            let told: Vec<Option<Told>> = values(list, stderr).into_iter().map(Some).collect();
+            disagreeing(&told)
+        };
+        // t of 100 degrees of freedom is 1.984 for a pair, and 2.43 of three.
+        let edge = 1.984 * f64::sqrt(2.0) * 0.01;
+        assert!(of(&[1.0, 1.0 + 0.99 * edge], 0.01).is_empty());
+        assert_eq!(of(&[1.0, 1.0 + 1.01 * edge], 0.01), [0, 1]);
+        assert_eq!(of(&[1.0, 1.2, 1.001], 0.01), [1]);
+        assert_eq!(of(&[1.0, 1.2, 1.001, 1.4, 1.002], 0.01), [1, 3]);
+        // None of three that all differ is right.
+        assert_eq!(of(&[1.0, 1.2, 1.4], 0.01), [0, 1, 2]);
+        // A run that tells nothing is not asked, and one degree of freedom says little.
+        let mut told: Vec<Option<Told>> = values(&[1.0, 1.0, 1.05], 0.01).into_iter().map(Some).collect();
+        told[0] = None;
+        assert_eq!(disagreeing(&told), [1, 2]);
+        told.iter_mut().flatten().for_each(|run| run.degrees_of_freedom = 1.0);
+        assert!(disagreeing(&told).is_empty());
     }
 
     #[test]
     fn a_budget_is_that_of_the_guide() {
         // Four runs, and a calibration known to 1 %.
         let all = values(&[10.0, 10.2, 9.9, 10.1], 0.02);
-        let found = budget(&all, 400, 0.01).unwrap();
+        let found = budget(&all, 0.01).unwrap();
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
         close(found.mean, 10.05);
         close(found.between, 0.129_099);
@@ -224,19 +307,19 @@ mod tests {
         close(found.coverage, 2.029_8);
         assert!(found.differs() && found.apart.is_none());
         // Without a calibration t has one degree of freedom less than there are runs.
-        close(budget(&all, 400, 0.0).unwrap().coverage, 3.182_4);
-        close(budget(&all[..2], 400, 0.0).unwrap().coverage, 12.706_2);
-        assert_eq!(budget(&all[..1], 400, 0.0), None);
+        close(budget(&all, 0.0).unwrap().coverage, 3.182_4);
+        close(budget(&all[..2], 0.0).unwrap().coverage, 12.706_2);
+        assert_eq!(budget(&all[..1], 0.0), None);
     }
 
     #[test]
     fn one_run_of_many_can_stand_apart() {
         // Grubbs's limit for six values is 1.887.
-        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), 100, 0.0).unwrap();
+        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), 0.0).unwrap();
         assert_eq!(apart(1.2).apart, Some(5));
         assert_eq!(apart(1.03).apart, None);
         // Of two nobody knows which.
-        assert_eq!(budget(&values(&[1.0, 2.0], 0.01), 100, 0.0).unwrap().apart, None);
-        assert!(!budget(&values(&[1.0, 1.01], 0.01), 100, 0.0).unwrap().differs());
+        assert_eq!(budget(&values(&[1.0, 2.0], 0.01), 0.0).unwrap().apart, None);
+        assert!(!budget(&values(&[1.0, 1.01], 0.01), 0.0).unwrap().differs());
     }
 }

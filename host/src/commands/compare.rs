@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::analysis::choose::choose;
+use crate::analysis::choose::{Wanted, choose};
+use crate::analysis::deviations;
 use crate::engine::{FitOptions, Model};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, measurement};
@@ -52,6 +53,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         ..FitOptions::of(model)
     };
     let candidates: Vec<FitOptions> = models.into_iter().map(options).collect();
+    let measurement = deviations::settled(measurement, &Wanted::Best(candidates.clone()));
     let fitted = choose(&measurement.samples, &candidates);
     let choice = fitted.map_err(|error| input::explain(&measurement, error))?;
     let text = match arguments.output.format {

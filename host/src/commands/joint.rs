@@ -1,15 +1,16 @@
 //! `brdfit joint`: several scans of one material, of which chosen parameters are the same.
 
-mod repeats;
-
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 use brdfit_core::geometry::Sample;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
+use crate::analysis::deviations;
 use crate::analysis::fit::{FittedScan, fit};
 use crate::analysis::joint::{self, Candidate};
 use crate::analysis::repeats::quantities;
@@ -20,17 +21,19 @@ use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, measurement};
 use crate::number::{four, two};
 use crate::options::SearchArguments;
-use crate::output::{Format, OutputArguments, deliver};
+use crate::output::{OutputArguments, deliver};
+use crate::page::{budget, provenance};
 use crate::parameters::parameter;
 use crate::result::json::ByName;
-use crate::result::json::provenance::provenance;
+use crate::result::json::provenance::provenance as of_input;
+use crate::result::repeats;
 use crate::streams::Streams;
 use crate::terms::term_names;
 
 /// Fits several scans of one material together: wavelengths that share m, or repeats that share all but the weights
 #[derive(Args, Debug)]
 #[command(
-    after_help = "With --repeats the scans are runs of one sample: each is fitted alone, and the budget of uncertainty over them is printed.\n\nExample:\n  brdfit joint red.csv green.csv blue.csv --share m\n  brdfit joint run1.csv run2.csv run3.csv --repeats --scale-uncertainty 3%"
+    after_help = "With --repeats the scans are runs of one sample: each is fitted alone, and the budget of uncertainty over them is printed.\n\nExample:\n  brdfit joint red.csv green.csv blue.csv --share m\n  brdfit joint run1.csv run2.csv run3.csv --repeats --scale-uncertainty 3%\n  brdfit joint run1.csv run2.csv run3.csv --repeats --format html -o budget.html"
 )]
 pub struct Arguments {
     /// Two to eight scans (with --repeats more), as `brdfit fit` reads them; a file may hold several
@@ -42,21 +45,41 @@ pub struct Arguments {
     #[command(flatten)]
     search: SearchArguments,
     #[command(flatten)]
-    output: OutputArguments,
+    output: OutputArguments<JointFormat>,
     #[command(flatten)]
     read: ReadOptions,
 }
 
-/// Runs the subcommand.
+/// The forms of a joint fit, and of the budget over repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum JointFormat {
+    /// A page for people
+    Text,
+    /// JSON
+    Json,
+    /// With --repeats, a page for people and for print, as one HTML file
+    Html,
+}
+
+fn no_page() -> Error {
+    Error::new("--format html is the page of --repeats")
+        .help("take text or json, or brdfit report for a page on each scan")
+}
+
+/// Runs the subcommand; `given` are all arguments of the program, which a page shows.
 ///
 /// # Errors
 /// An unknown parameter, too few or too many scans, a scan that cannot be read or fitted, or an output that cannot be written.
-pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     if arguments.read.repeats {
-        return run_repeats(arguments, streams);
+        return run_repeats(arguments, given, streams);
+    }
+    if arguments.output.format == JointFormat::Html {
+        return Err(no_page());
     }
     arguments.search.instrument.refuse_offset("joint")?;
-    let candidates = with_shared(&arguments.search.wanted()?, arguments.share.as_deref().unwrap_or("m"))?;
+    let wanted = arguments.search.wanted()?;
+    let candidates = with_shared(&wanted, arguments.share.as_deref().unwrap_or("m"))?;
     let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
@@ -65,8 +88,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
                 .help(format!("give 2 to {SCANS} scans")),
         );
     }
-    let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let pool = arguments.search.pool()?;
+    let measurements = settled(measurements, &wanted, &pool);
+    let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let fits = pool
         .install(|| joint::fit(&samples, &candidates))
         .map_err(|(place, error)| match measurements.get(place) {
@@ -75,16 +99,23 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         })?;
     let best = joint::best(&fits).ok_or_else(|| Error::new("there is no model to fit"))?;
     let text = match arguments.output.format {
-        Format::Text => text(&fits, best, &measurements),
-        Format::Json => json(&fits, best, &measurements),
+        JointFormat::Text => text(&fits, best, &measurements),
+        JointFormat::Json => json(&fits, best, &measurements),
+        JointFormat::Html => return Err(no_page()),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     measurement::note(&measurements, streams.errors);
     Ok(())
 }
 
+/// Each scan with weights from its own fit, where its file gives standard deviations.
+fn settled(measurements: Vec<Measurement>, wanted: &Wanted, pool: &ThreadPool) -> Vec<Measurement> {
+    let one = |measurement| deviations::settled(measurement, wanted);
+    pool.install(|| measurements.into_par_iter().map(one).collect())
+}
+
 /// The budget over runs of one sample.
-fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
+fn run_repeats(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     if arguments.share.is_some() {
         return Err(
             Error::new("--repeats fits each run alone, so that nothing is left to --share").help("keep one of them"),
@@ -109,8 +140,10 @@ fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error
     let mut alone = options;
     alone.instrument.scale_uncertainty = 0.0;
     let alone = Wanted::One(alone);
+    let pool = arguments.search.pool()?;
+    let measurements = settled(measurements, &alone, &pool);
     let fit_all = || measurements.par_iter().map(|one| fit(one, &alone)).collect();
-    let fits: Vec<Result<FittedScan, Error>> = arguments.search.pool()?.install(fit_all);
+    let fits: Vec<Result<FittedScan, Error>> = pool.install(fit_all);
     let fits: Vec<FittedScan> = fits.into_iter().collect::<Result<_, _>>()?;
     let calibration = options.instrument.scale_uncertainty;
     let found = repeats::Found {
@@ -121,8 +154,9 @@ fn run_repeats(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error
         calibration,
     };
     let text = match arguments.output.format {
-        Format::Text => repeats::text(&found),
-        Format::Json => repeats::json(&found),
+        JointFormat::Text => repeats::text(&found),
+        JointFormat::Json => repeats::json(&found),
+        JointFormat::Html => budget::page(&found, &provenance::command(given)),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
     measurement::note(&measurements, streams.errors);
@@ -229,7 +263,7 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
                 "scan": measurement.label(),
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
-                "provenance": provenance(&measurement.about, Some(&best.options)),
+                "provenance": of_input(&measurement.about, Some(&best.options)),
             })
         })
         .collect();

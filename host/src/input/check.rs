@@ -12,7 +12,7 @@ use super::raw::{Places, RawScan, Row, Weight};
 use super::read_as::ReadAs;
 use super::side;
 use super::units::{Angles, Forward, Quantity};
-use super::weight::{self, Deviation};
+use super::weight::{self, Deviation, OnDeviations};
 use crate::error::Error;
 use crate::number::shortest;
 
@@ -71,6 +71,16 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     // Weights alone tell no more; a table of the program's own has the deviations beside them.
     let told = sigma_ln.is_some() && deviations.iter().all(|deviation| *deviation != Deviation::default());
     deviations.retain(|_| told);
+    let on_deviations = OnDeviations {
+        absolute: options.absolute_sigma,
+        correct_ln_bias: options.correct_ln_bias,
+    };
+    if on_deviations.absolute && sigma_ln.is_none() {
+        return Err(
+            Error::new("no standard deviations were read, which --absolute-sigma takes the errors from")
+                .help("leave it out, or name their column with --columns"),
+        );
+    }
     Ok(Measurement {
         file: file.to_string(),
         name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
@@ -82,6 +92,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         lines,
         sigma_ln,
         deviations,
+        on_deviations,
         left_out: counts.list(),
         masked,
         about: scan.about,

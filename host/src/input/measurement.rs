@@ -9,7 +9,7 @@ use super::format::SAMPLES;
 use super::left_out::{LeftOut, Reason, summary};
 use super::read_as::ReadAs;
 use super::units::{Angles, Forward, Quantity};
-use super::weight::Deviation;
+use super::weight::{Deviation, OnDeviations};
 use crate::plain::plain;
 
 /// A scan as it was read.
@@ -27,6 +27,8 @@ pub struct Measurement {
     pub sigma_ln: Option<f64>,
     /// The standard deviations that the file gives, one a sample; none if it does not give all.
     pub deviations: Vec<Deviation>,
+    /// What is asked of the errors and of the bias of ln f.
+    pub on_deviations: OnDeviations,
     /// What the numbers of the file were taken for.
     pub read_as: ReadAs,
     /// What was left out, and why.
@@ -48,6 +50,7 @@ impl Measurement {
             lines: vec![0; samples.len()],
             sigma_ln,
             deviations: Vec::new(),
+            on_deviations: OnDeviations::default(),
             read_as: ReadAs {
                 format: SAMPLES,
                 angles: Angles::Rad,

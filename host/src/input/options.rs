@@ -100,6 +100,12 @@ pub struct ReadOptions {
     #[cfg_attr(feature = "cli", arg(long, value_name = "DEG=FACTOR", value_parser = parse::weight_angle, help_heading = "Weights"))]
     #[serde(deserialize_with = "parse::weights")]
     pub weight_angle: Vec<(f64, f64)>,
+    /// Errors are those of the file's standard deviations whatever chi^2 says of them [default: unless chi^2 refutes them]
+    #[cfg_attr(feature = "cli", arg(long, help_heading = "Weights"))]
+    pub absolute_sigma: bool,
+    /// Raises ln BRDF by what symmetric noise takes from it on average where the file gives no standard deviations: sigma^2/2, sigma being that of the residuals of a first fit
+    #[cfg_attr(feature = "cli", arg(long, help_heading = "Weights"))]
+    pub correct_ln_bias: bool,
 }
 
 /// Where the help has the options of tables alone.

@@ -20,19 +20,43 @@ pub struct Deviation {
     pub relative: f64,
 }
 
+/// The square of a relative deviation of a half, beyond which noise counts as that.
+const HALF: f64 = 0.25;
+
 impl Deviation {
     /// The whole over a BRDF, which is that of its logarithm to first order.
     pub fn over(&self, brdf: f64) -> f64 {
         libm::hypot(self.absolute / brdf, self.relative)
     }
 
+    /// The relative one that leaves residuals of this standard deviation in the logarithm, the inverse of [`Deviation::of_ln`].
+    pub fn of_residual(residual: f64) -> Self {
+        let mut relative = residual;
+        for _ in 0..30 {
+            let square = (relative * relative).min(HALF);
+            relative = residual / libm::sqrt(1.0 + 2.5 * square);
+        }
+        Deviation {
+            absolute: 0.0,
+            relative,
+        }
+    }
+
     /// The standard deviation of the logarithm of a value around `brdf` with normal noise, and how far its mean is low: to fourth order in the noise, and no more for one that is half noise.
     pub fn of_ln(&self, brdf: f64) -> (f64, f64) {
-        const HALF: f64 = 0.25;
         let sigma = self.over(brdf);
         let square = (sigma * sigma).min(HALF);
         (sigma * libm::sqrt(1.0 + 2.5 * square), square * (0.5 + 0.75 * square))
     }
+}
+
+/// What is asked where standard deviations are given, and where not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OnDeviations {
+    /// Errors are those of the standard deviations whatever chi^2 says.
+    pub absolute: bool,
+    /// Without any, ln f is raised by what noise of the size of the residuals takes from it.
+    pub correct_ln_bias: bool,
 }
 
 /// Normalises weights that are one over standard deviations of ln f; returns that of a weight of 1.

@@ -9,7 +9,7 @@ use crate::analysis::derived::{Derived, Value};
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
-use crate::engine::Outcome;
+use crate::engine::{Model, Outcome};
 use crate::input::left_out;
 use crate::names;
 use crate::number::{self, percent, shortest, two};
@@ -31,6 +31,16 @@ pub fn page(sections: &[Section], command: &str) -> String {
         [one] => format!("BRDF fit of {}", one.label),
         several => format!("BRDF fits of {} scans", several.len()),
     };
+    let lead = html! { (models(sections)) ", fitted to ln BRDF by brdfit " (env!("CARGO_PKG_VERSION")) "." };
+    let body = html! {
+        @if sections.len() > 1 { (overview(sections)) }
+        @for (place, section) in sections.iter().enumerate() { (scan(place, section, sections.len() > 1, command)) }
+    };
+    document(&title, &lead, &body)
+}
+
+/// A whole file of this title, what stands below it, and all else.
+pub(super) fn document(title: &str, lead: &Markup, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -43,10 +53,9 @@ pub fn page(sections: &[Section], command: &str) -> String {
             body {
                 header {
                     h1 { (title) }
-                    p { (models(sections)) ", fitted to ln BRDF by brdfit " (env!("CARGO_PKG_VERSION")) "." }
+                    p { (lead) }
                 }
-                @if sections.len() > 1 { (overview(sections)) }
-                @for (place, section) in sections.iter().enumerate() { (scan(place, section, sections.len() > 1, command)) }
+                (body)
             }
         }
     };
@@ -335,11 +344,18 @@ fn models(sections: &[Section]) -> String {
     let mut models: Vec<_> = sections.iter().map(|section| section.fit.outcome.model).collect();
     models.dedup();
     match &models[..] {
-        [one] if one.is_paper() => {
+        [one] => model(one),
+        _ => "Models as each scan needs them".into(),
+    }
+}
+
+/// A model, as a clause.
+pub(super) fn model(model: &Model) -> String {
+    match model {
+        one if one.is_paper() => {
             "Modified Cook-Torrance model of Bishop, Butler and Marciniak, Opt. Eng. 60(9), 094103 (2021)".into()
         }
-        [one] => format!("Model {} ({}; {})", one.name, one.what, one.source),
-        _ => "Models as each scan needs them".into(),
+        one => format!("Model {} ({}; {})", one.name, one.what, one.source),
     }
 }
 
@@ -365,7 +381,7 @@ fn fitted(outcome: &Outcome, name: &str) -> Option<f64> {
 }
 
 /// A name such as rho_s as it is set.
-fn symbol(name: &str) -> Markup {
+pub(super) fn symbol(name: &str) -> Markup {
     let (letter, index) = name.split_once('_').unwrap_or((name, ""));
     let letter = match letter {
         "rho" => "ρ",
@@ -377,12 +393,12 @@ fn symbol(name: &str) -> Markup {
 }
 
 /// Five significant digits, with a power of ten where that is shorter.
-fn number(value: f64) -> Markup {
+pub(super) fn number(value: f64) -> Markup {
     let (mantissa, exponent) = number::set(&number::significant(value, 5));
     html! { (mantissa) @if let Some(exponent) = exponent { " × 10" sup { (exponent) } } }
 }
 
-fn minus(text: &str) -> String {
+pub(super) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 

@@ -324,11 +324,12 @@ fn of_scan() -> Vec<Column> {
         ),
         text(
             "deviations",
-            "what became of the standard deviations of the file: used for errors, or refuted by chi2",
+            "what became of the standard deviations of the file: used for errors, refuted by chi2, or absolute, as asked",
             Found,
             |row| match row.scan?.deviations? {
                 Verdict::Used => Some("used".into()),
                 Verdict::Refuted(_) => Some("refuted".into()),
+                Verdict::Absolute(_) => Some("absolute".into()),
             },
         ),
         whole("left_out", "rows of the scan that were left out", Otherwise, |row| {

@@ -47,6 +47,10 @@ pub fn unseen(names: &[&str]) -> String {
 pub fn deviations(verdict: Verdict) -> String {
     match verdict {
         Verdict::Used => ": errors are those of the file's standard deviations".into(),
+        Verdict::Absolute(ratio) => format!(
+            ": errors are those of the file's standard deviations, as asked; residuals are {} times these",
+            two(ratio)
+        ),
         Verdict::Refuted(ratio) => format!(
             ": that refutes the file's standard deviations, and errors are {} times theirs",
             two(ratio)

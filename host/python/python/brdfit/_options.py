@@ -72,6 +72,8 @@ class Reading(TypedDict, total=False):
     coverage: float
     weights: Literal["file", "equal"]
     sigma_floor: float
+    absolute_sigma: bool
+    correct_ln_bias: bool
     weight_angle: Mapping[float, float]
 
 

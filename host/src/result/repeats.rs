@@ -1,4 +1,4 @@
-//! `brdfit joint --repeats`: runs of one sample and their budget of uncertainty.
+//! What `brdfit joint --repeats` writes: runs of one sample and their budget of uncertainty.
 
 use serde::Serialize;
 
@@ -52,7 +52,7 @@ pub fn text(found: &Found) -> String {
             None => format!("  {:<26} not determined in {}", name(quantity), missing(quantity)),
         });
     }
-    lines.extend(verdict(found));
+    lines.extend(verdict(found).iter().map(|sentence| format!("  {sentence}")));
     lines.join("\n").trim_end().to_string() + "\n"
 }
 
@@ -77,7 +77,8 @@ fn budgeted(name: &str, budget: &Budget) -> String {
     ])
 }
 
-fn name(quantity: &Quantity) -> String {
+/// A quantity with its angle of incidence and unit.
+pub fn name(quantity: &Quantity) -> String {
     let unit = if quantity.unit.is_empty() {
         String::new()
     } else {
@@ -89,14 +90,15 @@ fn name(quantity: &Quantity) -> String {
     }
 }
 
-fn missing(quantity: &Quantity) -> String {
+/// The runs that do not tell a quantity.
+pub fn missing(quantity: &Quantity) -> String {
     let all = quantity.runs.iter().enumerate().filter(|(_, run)| run.is_none());
     let all: Vec<String> = all.map(|(place, _)| format!("run {}", place + 1)).collect();
     all.join(", ")
 }
 
-/// What the table means, and whether the runs agree.
-fn verdict(found: &Found) -> Vec<String> {
+/// Sentences on what the table means, and whether the runs agree.
+pub fn verdict(found: &Found) -> Vec<String> {
     let budgets = || {
         found
             .quantities
@@ -104,12 +106,12 @@ fn verdict(found: &Found) -> Vec<String> {
             .filter_map(|one| Some((one, one.budget.as_ref()?)))
     };
     let mut lines = vec![format!(
-        "  mean +- expanded holds the value with {:.0} %: k is Student's t for the effective degrees of freedom. Between: standard deviation of the runs; within: of one run by its own residuals.",
+        "Mean +- expanded holds the value with {:.0} %: k is Student's t for the effective degrees of freedom. Between: standard deviation of the runs; within: of one run by its own residuals.",
         100.0 * LEVEL
     )];
     if found.calibration > 0.0 {
         lines.push(format!(
-            "  Type B is the calibration, known to {}.",
+            "Type B is the calibration, known to {}.",
             percent(found.calibration)
         ));
     }
@@ -118,22 +120,52 @@ fn verdict(found: &Found) -> Vec<String> {
         .map(|(one, budget)| format!("{} ({} times)", name(one), two(budget.between / budget.within)))
         .collect();
     lines.push(if more.is_empty() {
-        "  The runs differ by no more than their own errors.".into()
+        "The runs differ by no more than their own errors.".into()
     } else {
-        format!("  The runs differ by more than their own errors: {}.", more.join(", "))
+        format!("The runs differ by more than their own errors: {}.", more.join(", "))
     });
+    lines.extend(disagreement(found));
     let apart: Vec<String> = budgets()
         .filter_map(|(one, budget)| Some(format!("run {} in {}", budget.apart? + 1, name(one))))
         .collect();
     lines.push(match found.fits.len() {
-        2 => "  Of two runs no test tells which is off.".into(),
-        _ if apart.is_empty() => "  No run stands apart from the others (Grubbs's test, 5 %).".into(),
+        2 => "Of two runs no test tells which is off.".into(),
+        _ if apart.is_empty() => "No run stands apart from the others (Grubbs's test, 5 %).".into(),
         _ => format!(
-            "  Stands apart from the others (Grubbs's test, 5 %): {}.",
+            "Stands apart from the others (Grubbs's test, 5 %): {}.",
             apart.join(", ")
         ),
     });
     lines
+}
+
+/// Which runs do not agree within their expanded errors, and in what: one sentence for each set of runs.
+fn disagreement(found: &Found) -> Vec<String> {
+    let mut sets: Vec<(&[usize], Vec<String>)> = Vec::new();
+    for quantity in found.quantities.iter().filter(|one| !one.disagree.is_empty()) {
+        match sets.iter_mut().find(|(runs, _)| *runs == quantity.disagree) {
+            Some((_, names)) => names.push(name(quantity)),
+            None => sets.push((&quantity.disagree, vec![name(quantity)])),
+        }
+    }
+    if sets.is_empty() {
+        return vec!["All runs agree within their own expanded errors.".into()];
+    }
+    let sentence = |(runs, names): &(&[usize], Vec<String>)| {
+        let numbers: Vec<String> = runs.iter().map(|place| (place + 1).to_string()).collect();
+        let (who, with) = match runs {
+            [_] => ("Run", "the others"),
+            _ if runs.len() == found.fits.len() => ("Runs", "each other"),
+            _ => ("Runs", "most others"),
+        };
+        let does = if runs.len() == 1 { "does" } else { "do" };
+        format!(
+            "{who} {} {does} not agree with {with} within their own expanded errors in {}.",
+            numbers.join(" and "),
+            names.join(", ")
+        )
+    };
+    sets.iter().map(sentence).collect()
 }
 
 #[derive(Serialize)]
@@ -165,6 +197,8 @@ struct Row<'a> {
     stderr: Vec<Option<f64>>,
     /// Null if a run does not tell it.
     budget: Option<JsonBudget>,
+    /// Those that do not agree with most others within their own expanded errors, from 1.
+    runs_that_disagree: Vec<usize>,
 }
 
 #[derive(Serialize)]
@@ -213,6 +247,7 @@ pub fn json(found: &Found) -> String {
         values: one.runs.iter().map(|run| run.map(|run| run.value)).collect(),
         stderr: one.runs.iter().map(|run| run.map(|run| run.stderr)).collect(),
         budget: one.budget.as_ref().map(budget),
+        runs_that_disagree: one.disagree.iter().map(|place| place + 1).collect(),
     });
     document::json(&Document {
         model: found.options.model.name,

@@ -9,7 +9,7 @@
 //! | what the functions do, for both number types | `options.rs`, `scan.rs`, `fit.rs`, `search.rs` |
 //! | the functions themselves, by name | `names.rs`, `single.rs`, `double.rs` |
 //!
-//! `double.rs` is `single.rs` with `f64` in place of `f32`; a test holds it to that, and the header to the source.
+//! `build.rs` makes of `single.rs` the same in `f64`, which `double.rs` takes in; a test holds the header to the source.
 //!
 //! # Panics
 //! Nothing here panics; where the core is linked for a target without operating system, a panic that the optimiser could not rule out would stop in an endless loop.

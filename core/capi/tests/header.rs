@@ -17,12 +17,6 @@ fn compare(file: &str, made: &str) {
     assert_eq!(made.len(), there.len(), "{file}: length");
 }
 
-fn what_is_written_for_float_is_the_same_for_double() {
-    let double = |text: &str| text.replace("f32", "f64").replace("F32", "F64");
-    compare("src/double.rs", &double(include_str!("../src/single.rs")));
-    compare("tests/double.rs", &double(include_str!("float.rs")));
-}
-
 #[test]
 fn every_error_and_stop_has_its_text() {
     let text = |pointer: *const std::ffi::c_char| {
@@ -47,15 +41,43 @@ fn every_error_and_stop_has_its_text() {
 
 #[test]
 fn the_header_is_that_of_the_source() {
-    // First, for the header is made from it.
-    what_is_written_for_float_is_the_same_for_double();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for file in ["types.rs", "names.rs", "single.rs", "double.rs"] {
-        builder = builder.with_src(folder.join("src").join(file));
+    for file in [
+        "src/types.rs",
+        "src/names.rs",
+        "src/single.rs",
+        concat!(env!("OUT_DIR"), "/src/double.rs"),
+    ] {
+        builder = builder.with_src(folder.join(file));
     }
     let mut header = Vec::new();
     builder.generate().unwrap().write(&mut header);
     compare("include/brdfit.h", &String::from_utf8(header).unwrap());
+}
+
+#[test]
+fn readme_has_every_code() {
+    let (header, readme) = (include_str!("../include/brdfit.h"), include_str!("../README.md"));
+    let mut codes = 0;
+    for line in header.lines() {
+        let Some((name, code)) = line.trim_end_matches(',').split_once(" = ") else {
+            continue;
+        };
+        let (name, Ok(code)) = (name.trim(), code.parse()) else {
+            continue;
+        };
+        let meaning = match name {
+            _ if name.starts_with("BRDFIT_ERROR_") => brdfit_error_text(code),
+            _ if name.starts_with("BRDFIT_STOP_") => brdfit_stop_text(code),
+            _ => continue,
+        };
+        // SAFETY: the library gives texts that end with 0 and live for ever.
+        let meaning = unsafe { CStr::from_ptr(meaning) }.to_str().unwrap();
+        let row = format!("| {code} | `{name}` | {meaning} |\n");
+        assert!(readme.contains(&row), "README.md lacks {row}");
+        codes += 1;
+    }
+    assert_eq!(codes, 16 + 5);
 }

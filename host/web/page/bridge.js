@@ -6,6 +6,8 @@ class Stopped extends Error {}
 /** What the program says of wrong input, in its own line. */
 class Told extends Error {}
 
+/** @typedef {{eps: number, boxes: number, open: number}} SoFar */
+
 class Bridge {
   /**
    * @param {Uint8Array} packed the module
@@ -25,6 +27,11 @@ class Bridge {
     this.next = 1;
     /** Bytes of the module's memory after the last request. */
     this.memory = 0;
+    /**
+     * Is told how far a proof is.
+     * @type {(so_far: SoFar) => void}
+     */
+    this.told = () => {};
     this.start();
   }
 
@@ -40,6 +47,7 @@ class Bridge {
 
   /** @param {any} data */
   heard(data) {
+    if (data.told) { this.told(data.told); return; }
     const waits = this.waiting.get(data.id);
     this.waiting.delete(data.id);
     if (data.memory) this.memory = data.memory;

@@ -2,6 +2,8 @@
 
 /** @type {any} */
 let core = null;
+/** The request that is being answered. */
+let asked = 0;
 
 /** @param {Uint8Array} bytes @returns {[number, number]} address and length of a copy in the module */
 function give(bytes) {
@@ -17,15 +19,23 @@ async function handle(data) {
   try {
     let answer = null;
     if (packed || module) {
+      let last = 0;
+      // A proof has thousands of rounds a second.
+      const told = (/** @type {number} */ eps, /** @type {number} */ boxes, /** @type {number} */ open) => {
+        if (performance.now() < last + 100) return;
+        last = performance.now();
+        postMessage({ id: asked, told: { eps, boxes, open } });
+      };
       // The page gets it back, for the next worker.
       answer = module ?? (await WebAssembly.compile(unpack(packed, size)));
-      const instance = await WebAssembly.instantiate(answer, { page: { now: () => performance.timeOrigin + performance.now() } });
+      const instance = await WebAssembly.instantiate(answer, { page: { now: () => performance.timeOrigin + performance.now(), told } });
       core = instance.exports;
     } else if (forget) {
       core.brdfit_forget();
     } else if (bytes) {
       core.brdfit_file(...give(new TextEncoder().encode(name)), ...give(new Uint8Array(bytes)));
     } else {
+      asked = id;
       const length = core.brdfit_ask(...give(new TextEncoder().encode(request)));
       answer = new TextDecoder().decode(new Uint8Array(core.memory.buffer, core.brdfit_answer(), length));
     }

@@ -1,11 +1,14 @@
 //! From a request to the text of an answer.
 
 use std::collections::HashSet;
+use std::time::Duration;
 
 use brdfit::analysis::choose::choose;
 use brdfit::analysis::converge::study;
 use brdfit::analysis::fit::FittedScan;
 use brdfit::analysis::profile::findings::{Asked, find};
+use brdfit::analysis::proof::{Goal, provable, prove};
+use brdfit::engine::certify::Certificate;
 use brdfit::engine::models::MODELS;
 use brdfit::engine::{FitOptions, Model};
 use brdfit::error::Error;
@@ -26,12 +29,15 @@ use serde_json::value::RawValue;
 use serde_json::{Value, json};
 
 use crate::request::{Request, Want};
-use crate::session::Session;
+use crate::session::{Fitted, Session};
 use crate::view::{self, Points};
 
+/// Is told how far a proof is.
+pub type Told<'a> = &'a (dyn Fn(&Certificate) + Sync);
+
 /// `{"ok": ...}`, or `{"error": {...}}` with the program's own line.
-pub fn answer(session: &mut Session, request: &[u8]) -> String {
-    let text = match answered(session, request) {
+pub fn answer(session: &mut Session, request: &[u8], told: Told) -> String {
+    let text = match answered(session, request, told) {
         Ok(value) => serde_json::to_string(&json!({ "ok": value })),
         Err(error) => serde_json::to_string(&json!({ "error": {
             "line": error.to_string(),
@@ -42,7 +48,7 @@ pub fn answer(session: &mut Session, request: &[u8]) -> String {
     text.unwrap_or_default()
 }
 
-fn answered(session: &mut Session, request: &[u8]) -> Result<Value, Error> {
+fn answered(session: &mut Session, request: &[u8], told: Told) -> Result<Value, Error> {
     let request: Request = serde_json::from_slice(request).map_err(|error| Error::new(error.to_string()))?;
     let of = request.of.map_or("{}", RawValue::get);
     Ok(match request.want {
@@ -84,6 +90,7 @@ fn answered(session: &mut Session, request: &[u8]) -> Result<Value, Error> {
             let choice = choose(&scan.samples, &candidates).map_err(|error| input::explain(scan, error))?;
             json!({ "json": compare::json(scan, &choice), "svg": compare::svg(scan, &choice), "text": compare::text(scan, &choice) })
         }
+        Want::Certify { within, seconds } => certified(session.fit(of)?, within, seconds, told)?,
         Want::Converge { seeds } => {
             let (subject, scan) = session.one(of)?;
             let options = FitOptions {
@@ -198,6 +205,26 @@ fn timeless(fit: &FittedScan) -> FittedScan {
     let mut fit = fit.clone();
     fit.forget_times();
     fit
+}
+
+/// A proof of a fit, with what is proved when its time ends.
+fn certified(fitted: Fitted, within: f64, seconds: f64, told: Told) -> Result<Value, Error> {
+    provable(fitted.wanted.candidates())?;
+    if !(0.0 < within && within < 1.0) {
+        return Err(Error::new("write a part between 0 and 100 %"));
+    }
+    let goal = Goal {
+        eps: within,
+        boxes: u64::MAX,
+        limit: Duration::try_from_secs_f64(seconds).ok(),
+        interrupted: &|| false,
+        progress: told,
+    };
+    let proved = prove(fitted.scan, fitted.fit.clone(), &goal)?;
+    Ok(json!({
+        "json": result::json(&[timeless(&proved)]),
+        "text": result::text(std::slice::from_ref(&proved), false),
+    }))
 }
 
 fn export(fit: &FittedScan, to: form::Form, wavelength: Option<f64>) -> Result<Value, Error> {

@@ -4,6 +4,7 @@ use std::alloc::{Layout, alloc, dealloc};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use brdfit::engine::certify::Certificate;
 use brdfit::engine::clock;
 
 use crate::answer::answer;
@@ -13,6 +14,8 @@ use crate::session::Session;
 unsafe extern "C" {
     /// Milliseconds since the beginning of 1970, UTC, with parts.
     safe fn now() -> f64;
+    /// How far a proof is: the part within which it is proved, boxes that were bounded, boxes to go.
+    safe fn told(eps: f64, boxes: f64, open: f64);
 }
 
 static SESSION: Mutex<Option<Session>> = Mutex::new(None);
@@ -21,6 +24,10 @@ static ANSWER: Mutex<String> = Mutex::new(String::new());
 
 fn clock_of_the_page() -> Duration {
     Duration::try_from_secs_f64(now() / 1e3).unwrap_or_default()
+}
+
+fn tell(so_far: &Certificate) {
+    told(so_far.eps, so_far.boxes as f64, so_far.open as f64);
 }
 
 fn with<T>(act: impl FnOnce(&mut Session) -> T) -> T {
@@ -82,7 +89,7 @@ pub extern "C" fn brdfit_forget() {
 pub unsafe extern "C" fn brdfit_ask(at: *mut u8, length: usize) -> usize {
     // SAFETY: this function's own conditions.
     let request = unsafe { taken(at, length) };
-    let text = with(|session| answer(session, &request));
+    let text = with(|session| answer(session, &request, &tell));
     let mut place = ANSWER.lock().unwrap_or_else(PoisonError::into_inner);
     *place = text;
     place.len()

@@ -70,6 +70,13 @@ pub enum Want {
         /// Their names with commas between, or auto.
         models: String,
     },
+    /// A proof that no parameters fit better, or those that do.
+    Certify {
+        /// The part that no cost is to be lower by than that of the fit.
+        within: f64,
+        /// The longest time, s.
+        seconds: f64,
+    },
     /// Error against run time of both methods.
     Converge {
         /// Number of searches by each.

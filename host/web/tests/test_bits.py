@@ -104,6 +104,13 @@ def test_results_that_leave(page, tmp_path):
     assert {"zemax", "mitsuba", "openmaterial", "bird"} <= set(forms)
 
 
+def certify(page, percent, seconds):
+    page.page.get_by_label("Part, %").fill(percent)
+    page.page.get_by_label("Longest time, s").fill(seconds)
+    page.page.get_by_role("button", name="Prove the optimum", exact=True).click()
+    page.settle()
+
+
 def test_further_studies(page):
     page.give(EXAMPLE)
     for button, name in [("Profile", "example-profile-rho_d.json"), ("Compare all models", "example-models.json")]:
@@ -111,6 +118,10 @@ def test_further_studies(page):
         wanted = line(page.page.locator("#found pre").nth(1).text_content(), EXAMPLE.parent)
         assert page.download(name) == wanted, name
         assert page.page.locator("#found img").evaluate("image => image.decode().then(() => image.naturalWidth)") > 300
+    certify(page, "30", "120")
+    assert "certificate" in page.text("#found pre.wide")
+    wanted = line(page.page.locator("#found pre").nth(1).text_content(), EXAMPLE.parent)
+    assert page.download("example-proof.json") == wanted
     page.page.get_by_label("Seeds").fill("1")
     page.click("Error against run time")
     found = json.loads(page.download("example-converge.json"))

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 
 from axe_playwright_python.sync_playwright import Axe
@@ -88,6 +89,19 @@ def test_long_work_can_be_stopped(page):
     page.set("starts", "")
     page.set("method", "")
     assert page.text("#json") == before
+
+
+def test_a_proof_that_is_stopped_tells_how_far_it_came(page):
+    lives(page)
+    page.page.get_by_label("Part, %").fill("0.1")
+    page.page.get_by_label("Longest time, s").fill("600")
+    page.page.get_by_role("button", name="Prove the optimum", exact=True).click()
+    wait_until(page.page, "$('doing').textContent.includes('boxes')")
+    page.page.get_by_role("button", name="Stop", exact=True).click()
+    page.settle()
+    assert re.match(r"Stopped: (proved within [\d.]+ % so far, )?\d+ boxes, \d+ to go\.", page.text("#found pre.wide"))
+    assert "--within 0.1% --proof-boxes" in page.page.locator("#found pre").nth(1).text_content()
+    lives(page)
 
 
 def test_keyboard_alone(page):

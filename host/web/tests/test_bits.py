@@ -119,7 +119,7 @@ def test_further_studies(page):
         assert page.download(name) == wanted, name
         assert page.page.locator("#found img").evaluate("image => image.decode().then(() => image.naturalWidth)") > 300
     certify(page, "30", "120")
-    assert "certificate" in page.text("#found pre.wide")
+    assert "\n  proved     within 30 %" in page.text("#found pre.wide")
     wanted = line(page.page.locator("#found pre").nth(1).text_content(), EXAMPLE.parent)
     assert page.download("example-proof.json") == wanted
     page.page.get_by_label("Seeds").fill("1")

@@ -169,14 +169,17 @@ def test_speed_and_memory(page, tmp_path):
     with large.open("wb") as file:
         words = "simulate --theta-i 5:80:5 --theta-s=-78:78:0.25 --rho-d 0.04 --rho-s 6 --rho-v 0.05 --m 0.12 --n 1.6 --kappa 0.4 --noise 0.06"
         subprocess.run([os.environ["BRDFIT"], *words.split()], stdout=file, check=True)
-    for path in [ROOT / "tests/data/testdata1_pos_seed1.csv", EXAMPLE, large]:
+    # A fit that was made is kept, and the browser compiles better what it has run for some time: so each seed is another fit.
+    for path, seeds in [(ROOT / "tests/data/testdata1_pos_seed1.csv", 30), (EXAMPLE, 30), (large, 5)]:
         page.give(path)
-        page.click("Fit")
-        ours = min((page.click("Fit"), page.page.evaluate("state.fit.seconds"))[1] for _ in range(3))
-        native = []
-        for _ in range(3):
-            done = subprocess.run([os.environ["BRDFIT"], "fit", str(path), "--format", "json", "--time", "--threads", "1"], capture_output=True, check=True)
+        ours, native = [], []
+        for seed in range(seeds):
+            page.set("seed", str(seed))
+            ours.append(page.page.evaluate("state.fit.seconds"))
+            words = ["fit", str(path), "--format", "json", "--time", "--threads", "1", "--seed", str(seed)]
+            done = subprocess.run([os.environ["BRDFIT"], *words], capture_output=True, check=True)
             native.append(json.loads(done.stdout)["elapsed_s"])
+        page.set("seed", "")
         samples = json.loads(page.text("#json"))["samples"]
         memory = page.page.evaluate("bridge.memory") / 2**20
-        print(f"{samples} samples: {1e3 * ours:.1f} ms in the page, {1e3 * min(native):.1f} ms by the program on one thread, {ours / min(native):.1f} times; {memory:.0f} MB")
+        print(f"{samples} samples, the fastest of {seeds} fits: {1e3 * min(ours):.1f} ms in the page, {1e3 * min(native):.2f} ms by the program on one thread, {min(ours) / min(native):.1f} times; the page's first {1e3 * ours[0]:.1f} ms; {memory:.0f} MB")

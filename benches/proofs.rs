@@ -1,5 +1,6 @@
 //! Prints what `brdfit certify` proves, at what expense, as a Markdown table: `cargo run --release --example proofs > benches/results/certify.md`; other limits of a proof may follow, such as `-- --proof-boxes 100000`.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use brdfit_suite::program::brdfit;
@@ -8,6 +9,9 @@ use serde_json::Value;
 
 /// The limit of one proof, if no other is given.
 const LIMIT: [&str; 2] = ["--proof-seconds", "600"];
+
+/// Cases that are about a fit with options.
+const OWN: [(&str, &[&str]); 1] = [("bound036", &["--fix", "m=0.08212434656627657"])];
 
 fn main() {
     let given: Vec<String> = std::env::args().skip(1).collect();
@@ -76,7 +80,9 @@ fn row(file: &Path, part: &str, limit: &[String]) -> String {
     let path = file.display().to_string();
     let fixed = ["certify", &path, "--within", part, "--format", "json"];
     let limit = limit.iter().map(String::as_str);
-    let arguments: Vec<&str> = fixed.into_iter().chain(limit).collect();
+    let own = OWN.iter().find(|(case, _)| *case == name);
+    let own = own.map_or(&[][..], |(_, options)| options).iter().copied();
+    let arguments: Vec<&str> = fixed.into_iter().chain(own.clone()).chain(limit).collect();
     let before = processor_time();
     let ran = brdfit(&arguments, b"");
     let time = processor_time() - before;
@@ -88,7 +94,8 @@ fn row(file: &Path, part: &str, limit: &[String]) -> String {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let mark = |flag: bool, text: &'static str| if flag { text } else { "" };
     format!(
-        "| {name} | {} | {part} | {} | {} | {time:.1} | {:.4e} | {}{} |",
+        "| {} | {} | {part} | {} | {} | {time:.1} | {:.4e} | {}{} |",
+        iter::once(&*name).chain(own).collect::<Vec<_>>().join(" "),
         result["samples"],
         certificate["eps"]
             .as_f64()

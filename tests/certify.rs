@@ -162,6 +162,7 @@ fn the_slow_oracle_agrees_box_by_box() {
     let claim = Claim {
         eps: 0.05,
         boxes: u64::MAX,
+        alone: false,
         stop: &|| false,
         progress: &|_| {},
         watch: Some(&watch),
@@ -236,6 +237,7 @@ fn what_is_interrupted_says_how_far_it_came() {
     let claim = Claim {
         eps: 0.01,
         boxes: u64::MAX,
+        alone: false,
         stop: &|| rounds.fetch_add(1, Ordering::Relaxed) == 40,
         progress: &|certificate| seen.lock().expect("no thread panics").push(certificate.eps),
         watch: None,

@@ -142,6 +142,57 @@ fn what_has_no_proof_is_refused() {
     }
 }
 
+/// A batch proves what `fit --certify` does, with the same bytes on any number of threads.
+#[test]
+fn a_batch_is_proved_scan_by_scan() {
+    let folder = tempfile::tempdir().unwrap();
+    let scans = [1, 2].map(|seed| data(&format!("testdata3_sym_seed{seed}.csv")).display().to_string());
+    let out = folder.path().join("results.json").display().to_string();
+    let batch = |more: &[&str]| {
+        succeed(&[&["batch", &scans[0], &scans[1], "--certify", "5%", "--out", &out], more].concat());
+        std::fs::read_to_string(&out).unwrap()
+    };
+    let text = batch(&["--threads", "1"]);
+    let results: Value = serde_json::from_str(&text).unwrap();
+    for (result, scan) in results.as_array().unwrap().iter().zip(&scans) {
+        assert_eq!(result["certificate"]["complete"], true);
+        assert_eq!(*result, json(&["fit", scan, "--certify", "5%"]));
+    }
+    assert_eq!(text, batch(&["--threads", "3"]));
+    let refused = fail(&["batch", &scans[0], "--certify", "5%", "--model", "ggx", "--out", &out]);
+    assert!(refused.contains("only --model beckmann has one"), "{refused}");
+}
+
+/// Where the proof betters a fit whose terms the scan chose, the table of the choice is that of the new minimum.
+#[test]
+fn the_choice_of_terms_is_made_anew() {
+    // The place of the chosen one, costs and BIC of all.
+    let table = |result: &Value| -> (usize, Vec<(f64, f64)>) {
+        let candidates = result["selection"]["candidates"].as_array().unwrap();
+        let own = candidates.iter().position(|one| one["terms"] == result["terms"]);
+        let number = |value: &Value| value.as_f64().unwrap();
+        let numbers = candidates.iter().map(|one| (number(&one["cost"]), number(&one["bic"])));
+        (own.unwrap(), numbers.collect())
+    };
+    for (set, seed) in [(1, "3"), (2, "1")] {
+        let scan = noisy(set);
+        let auto = [&ONE_START[..], &["--terms", "auto", "--seed", seed]].concat();
+        let missed = json(&[&["fit", &scan][..], &auto].concat());
+        let found = json(&[&["certify", &scan][..], &auto].concat());
+        assert_eq!(found["certificate"]["better"], true);
+        assert_eq!(found["certificate"]["complete"], true);
+        let ((before, old), (own, new)) = (table(&missed), table(&found));
+        let (cost, bic) = new[own];
+        assert!(cost < 0.99 * old[before].0 && bic < old[before].1, "{old:?} {new:?}");
+        assert!(new.iter().all(|one| one.1 >= bic), "{new:?}");
+        // The last has all terms, so it contains the new minimum.
+        assert!(new.last().unwrap().0 <= cost * (1.0 + 1e-9), "{new:?}");
+        let samples = found["samples"].as_f64().unwrap();
+        let told = found["mse2"].as_f64().unwrap() * samples * samples;
+        assert!((told / cost - 1.0).abs() < 1e-12, "{told} is not {cost}");
+    }
+}
+
 /// The page of the guide shows what the program prints, but for the time.
 #[test]
 fn the_guide_shows_what_is_printed() {

@@ -51,6 +51,8 @@ pub struct Claim<'a> {
     pub eps: f64,
     /// End after this many boxes.
     pub boxes: u64,
+    /// Work on the calling thread alone, as where many proofs run side by side; boxes and results are the same.
+    pub alone: bool,
     /// End soon when this says so.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Is told after each round how far the proof is.
@@ -180,10 +182,12 @@ fn prove(
         (claim.progress)(&state);
         let round = queue.pop(ROUND);
         let watch = claim.watch;
-        let done: Vec<Done> = round
-            .par_iter()
-            .map(|task| task.process(scene, target, watch))
-            .collect();
+        let process = |task: &Task| task.process(scene, target, watch);
+        let done: Vec<Done> = if claim.alone {
+            round.iter().map(process).collect()
+        } else {
+            round.par_iter().map(process).collect()
+        };
         let mut found: Found = None;
         for done in done {
             state.boxes += done.boxes;

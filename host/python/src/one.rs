@@ -123,6 +123,7 @@ fn goal<'a>((eps, boxes, seconds): Claim, interrupted: &'a (dyn Fn() -> bool + S
         eps,
         boxes: boxes.unwrap_or(u64::MAX),
         limit: seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+        alone: false,
         interrupted,
         progress: &|_| (),
     }

@@ -146,6 +146,22 @@ impl Choice {
         &self.candidates[self.place]
     }
 
+    /// The choice anew, with a better fit of the chosen candidate: those that contain it are fitted from there too, and another may be the choice now.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn improved(&self, samples: &[Sample<f64>], better: &Outcome) -> Result<Self, FitError> {
+        let list: Vec<FitOptions> = self.candidates.iter().map(|one| one.options).collect();
+        let mut fitted = fit_each(samples, &list, Some(&(self.chosen().options, better.params)))?;
+        if let Some((_, outcome)) = fitted.get_mut(self.place) {
+            *outcome = Outcome {
+                robust: None,
+                ..better.clone()
+            };
+        }
+        judged(samples, fitted)
+    }
+
     /// The models of the candidates, each once.
     pub fn models(&self) -> Vec<&'static Model> {
         let options: Vec<_> = self.candidates.iter().map(|one| one.options).collect();
@@ -192,7 +208,7 @@ fn without_outliers(
     if richest.is_empty() {
         return Ok((samples.to_vec(), None));
     }
-    let fitted = fit_each(samples, &richest)?;
+    let fitted = fit_each(samples, &richest, None)?;
     let scale = |outcome: &Outcome| outcome.robust.as_ref().map_or(f64::INFINITY, |robust| robust.scale);
     let best = fitted.iter().min_by(|(_, a), (_, b)| scale(a).total_cmp(&scale(b)));
     Ok(best.map_or((samples.to_vec(), None), |(_, best)| {
@@ -203,7 +219,12 @@ fn without_outliers(
 /// Fits every candidate that has no more parameters than there are samples.
 ///
 /// Those with more parameters begin where those with fewer ended: one that contains another never ends above it.
-fn fit_each(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Vec<(FitOptions, Outcome)>, FitError> {
+/// Those that contain a fit that is known begin there too.
+fn fit_each(
+    samples: &[Sample<f64>],
+    list: &[FitOptions],
+    known: Option<&(FitOptions, Values)>,
+) -> Result<Vec<(FitOptions, Outcome)>, FitError> {
     let size = |options: &FitOptions| options.free().count();
     let sizes: BTreeSet<usize> = list.iter().map(size).collect();
     let mut fitted: Vec<(usize, FitOptions, Outcome)> = Vec::new();
@@ -215,9 +236,11 @@ fn fit_each(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Vec<(FitOpti
             .filter(|(_, options)| size(options) == one)
             .collect();
         let fit = |(place, options): &(usize, &FitOptions)| {
-            let known: Vec<Values> = fitted
-                .iter()
-                .map(|(_, _, smaller)| options.model.translated(smaller.model, &smaller.params))
+            let smaller = fitted.iter().map(|(_, _, smaller)| (smaller.model, &smaller.params));
+            let within = known.filter(|(known, _)| known.model == options.model && known.terms & !options.terms == 0);
+            let starts = smaller.chain(within.map(|(known, values)| (known.model, values)));
+            let known: Vec<Values> = starts
+                .map(|(model, values)| options.model.translated(model, values))
                 .collect();
             engine::fit_from(samples, options, &known).map(|outcome| (*place, **options, outcome))
         };
@@ -251,8 +274,13 @@ pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, Fi
         ..*options
     };
     let list: Vec<FitOptions> = list.iter().map(plain).collect();
+    judged(samples, fit_each(samples, &list, None)?)
+}
+
+/// The choice among fits of the same samples.
+fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result<Choice, FitError> {
     let mut candidates: Vec<Candidate> = Vec::new();
-    for (options, outcome) in fit_each(samples, &list)? {
+    for (options, outcome) in fitted {
         let free = options.free().count();
         let criteria = Criteria::new(counted(samples), free, outcome.cost, options.precision);
         let tested = SETS.iter().find(|(terms, _)| *terms == options.terms);

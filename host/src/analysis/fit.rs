@@ -137,15 +137,37 @@ impl FittedScan {
         let options = self.options.settled(&self.outcome);
         let known = [values, self.outcome.params];
         let outcome = Outcome {
-            robust: self.outcome.robust,
+            robust: self.outcome.robust.clone(),
             ..engine::fit_from(kept, &options, &known)?
         };
-        let elapsed = self.elapsed.unwrap_or_default();
+        self.with(measurement, kept, outcome)
+    }
+
+    /// The same with a better fit of the same samples, less outliers: where the scan chose the terms, it chooses anew.
+    ///
+    /// # Errors
+    /// [`FitError`].
+    pub fn with(self, measurement: &Measurement, kept: &[Sample<f64>], outcome: Outcome) -> Result<Self, FitError> {
+        let (mut options, mut outcome) = (self.options, outcome);
+        let choice = self.choice.as_ref();
+        let choice = choice.map(|choice| choice.improved(kept, &outcome)).transpose()?;
+        if let Some(chosen) = choice.as_ref().map(Choice::chosen)
+            && chosen.options.terms != options.terms
+        {
+            options = FitOptions {
+                robust: options.robust,
+                ..chosen.options
+            };
+            outcome = Outcome {
+                robust: outcome.robust,
+                ..chosen.outcome.clone()
+            };
+        }
         Ok(FittedScan {
-            choice: self.choice,
-            improved_from: Some(self.outcome.cost),
+            choice,
+            improved_from: self.improved_from.or(Some(self.outcome.cost)),
             elapsed: self.elapsed,
-            ..FittedScan::new(measurement, &self.options, outcome, elapsed)
+            ..FittedScan::new(measurement, &options, outcome, self.elapsed.unwrap_or_default())
         })
     }
 }

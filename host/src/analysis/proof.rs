@@ -29,6 +29,16 @@ pub struct Proof {
 }
 
 impl Proof {
+    /// The same, with what an earlier proof of other terms took.
+    fn after(self, earlier: &Proof) -> Self {
+        Proof {
+            boxes: self.boxes + earlier.boxes,
+            better: self.better || earlier.better,
+            elapsed: self.elapsed.zip(earlier.elapsed).map(|(a, b)| a + b),
+            ..self
+        }
+    }
+
     /// The part that the least cost may be below that of the fit; none where next to nothing is proved.
     pub fn within(&self) -> Option<f64> {
         (self.complete || self.eps < NOTHING).then_some(self.eps)
@@ -44,6 +54,8 @@ pub struct Goal<'a> {
     pub boxes: u64,
     /// The longest time.
     pub limit: Option<Duration>,
+    /// On the calling thread alone, as where many proofs run side by side.
+    pub alone: bool,
     /// An interrupt.
     pub interrupted: &'a (dyn Fn() -> bool + Sync),
     /// Is told now and then.
@@ -91,6 +103,7 @@ pub fn of_outcome(
     let claim = Claim {
         eps: goal.eps,
         boxes: goal.boxes,
+        alone: goal.alone,
         stop: &stop,
         progress: goal.progress,
         watch: None,
@@ -139,14 +152,24 @@ fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
 /// # Errors
 /// The model is not Eq. 14.
 pub fn prove(measurement: &Measurement, fitted: FittedScan, goal: &Goal) -> Result<FittedScan, Error> {
-    let (before, elapsed) = (fitted.outcome.cost, fitted.elapsed);
-    let found = of_outcome(&measurement.samples, &fitted.options, fitted.outcome, goal);
-    let (outcome, proof) = found.map_err(|error| input::explain(measurement, error))?;
-    Ok(FittedScan {
-        choice: fitted.choice,
-        improved_from: fitted.improved_from.or((outcome.cost < before).then_some(before)),
-        proof: Some(proof),
-        elapsed,
-        ..FittedScan::new(measurement, &fitted.options, outcome, elapsed.unwrap_or_default())
-    })
+    let explain = |error| input::explain(measurement, error);
+    let mut fitted = fitted;
+    let mut proved: Option<Proof> = None;
+    loop {
+        let (options, known) = (fitted.options, fitted.outcome.clone());
+        let before = known.cost;
+        let (outcome, proof) = of_outcome(&measurement.samples, &options, known, goal).map_err(explain)?;
+        let proof = proved.map_or(proof, |earlier| proof.after(&earlier));
+        if outcome.cost < before {
+            let kept = robust::kept(&measurement.samples, &outcome);
+            fitted = fitted.with(measurement, &kept, outcome).map_err(explain)?;
+            // Of other terms nothing is proved yet.
+            if fitted.options.terms != options.terms {
+                proved = Some(proof);
+                continue;
+            }
+        }
+        fitted.proof = Some(proof);
+        return Ok(fitted);
+    }
 }

@@ -15,7 +15,9 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::prove::{self, ProofArguments};
 use crate::analysis::choose::Wanted;
+use crate::analysis::proof::{Goal, provable};
 use crate::engine::simd::Simd;
 use crate::engine::{FitOptions, Until};
 use crate::error::Error;
@@ -53,6 +55,11 @@ pub struct Arguments {
     /// Fits only part i of n, to be merged with the others
     #[arg(long, value_name = "i/n")]
     shard: Option<Shard>,
+    /// Proves of each scan that no parameters within the bounds have an MSE^2 lower by more than this part, such as 5%, or finds them
+    #[arg(long, value_name = "PART", value_parser = prove::part)]
+    certify: Option<f64>,
+    #[command(flatten)]
+    proof: ProofArguments,
     #[command(flatten)]
     search: SearchArguments,
     #[command(flatten)]
@@ -72,6 +79,9 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let form = Form::of(out, arguments.format)?;
     let wanted = arguments.search.wanted()?;
+    if arguments.certify.is_some() {
+        provable(wanted.candidates())?;
+    }
     arguments.read.refuse_together("batch")?;
     let files = list::files(&arguments.scans, out, streams.input)?;
     // Lists of names are inputs too.
@@ -117,12 +127,19 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let journal = Mutex::new(journal);
     let interrupt = interrupt::keeping();
+    let interrupted = || interrupt.load(Ordering::Relaxed);
+    let goal = arguments.certify.map(|eps| Goal {
+        // Scans are side by side already.
+        alone: true,
+        ..arguments.proof.goal(eps, &interrupted, &|_| ())
+    });
     let job = run::Job {
         files: &files,
         wanted: &wanted.until(Until::set(interrupt)),
         models,
         read: &arguments.read,
         rows: head.rows,
+        goal,
         interrupt,
     };
     let places: Vec<usize> = (0..files.len()).filter(|&index| shard.has(index)).collect();
@@ -205,7 +222,8 @@ fn asked_for(wanted: &Wanted, arguments: &Arguments) -> String {
         ..*options
     };
     let candidates: Vec<FitOptions> = wanted.candidates().iter().map(portable).collect();
-    format!("{candidates:?}, {:?}", arguments.read)
+    let proof = arguments.certify.map(|eps| (eps, &arguments.proof));
+    format!("{candidates:?}, {:?}, {proof:?}", arguments.read)
 }
 
 fn progress(shown: bool, files: usize) -> ProgressBar {

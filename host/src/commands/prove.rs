@@ -35,6 +35,7 @@ impl ProofArguments {
             eps,
             boxes: self.proof_boxes.unwrap_or(u64::MAX),
             limit: self.proof_seconds,
+            alone: false,
             interrupted,
             progress,
         }

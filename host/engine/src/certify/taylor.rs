@@ -155,6 +155,12 @@ fn shared(all: f64, of: [f64; 2], h: &[f64; D]) -> [f64; 2] {
 /// More than this is as good as nothing known, in ln f.
 const CAP: f64 = 4.0;
 
+/// Parts that fall by less of [`CAP`] than this are not split so that others are known better.
+const SHORT: f64 = 0.25;
+
+/// A part that is e^-6 of the measured value, or less, adds next to nothing to a residual.
+const NEAR: f64 = 6.0;
+
 /// The largest of s t |s - t| for two shares s and t, 1 / (6 sqrt 3).
 const SKEW: f64 = 0.096226;
 
@@ -237,7 +243,13 @@ impl Expansion {
         for k in 0..PARTS {
             if parts[k] == Part::Faint {
                 let most = ln_1p_exp(reach.most[k] - reach.lo);
-                self.blame[k] += w * most.min(CAP);
+                // Far below the measured value it matters to nothing, however dark the others can be.
+                self.blame[k] += w * most.min((reach.most[k] + NEAR).clamp(0.0, CAP));
+                // It stands out, by as much as is not known, where the bright parts fall far.
+                for i in 0..D {
+                    let falls: f64 = (0..PARTS).map(|l| share[l] * of.slope[l][i].abs() * h[i]).sum();
+                    self.blame[i] += w * most.min(CAP) * (falls / CAP - SHORT).clamp(0.0, 1.0);
+                }
                 added += most;
             }
         }
@@ -249,6 +261,7 @@ impl Expansion {
         self.cost += w * r * r;
         self.lost += 2.0 * w * r.abs() * error;
         self.lost_square += 0.25 * w * q * q;
+        let reach_most = reach.most;
         let reach = r.abs() + size + q;
         self.size += w * (reach * reach + r.abs() * size2);
         let wr = w * r;
@@ -276,7 +289,9 @@ impl Expansion {
             if pair_most[p] == 0.0 {
                 continue;
             }
-            let width = w * pair_most[p] * apart[p].min(CAP);
+            // Two parts of which neither comes near the measured value do not matter.
+            let seen = (reach_most[k].max(reach_most[l]) + NEAR).clamp(0.0, 1.0);
+            let width = w * seen * pair_most[p] * apart[p].min(CAP);
             for i in 0..D {
                 let mut mine = (of.slope[k][i] - of.slope[l][i]).abs() * h[i];
                 if i >= A {

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
+use crate::analysis::proof::{Goal, prove};
 use crate::engine::Model;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
@@ -30,6 +31,8 @@ pub struct Job<'a> {
     pub read: &'a ReadOptions,
     /// What is kept.
     pub rows: Rows,
+    /// What is to be proved of each scan, if anything is.
+    pub goal: Option<Goal<'a>>,
     /// Stops before the next file once it is set.
     pub interrupt: &'a AtomicBool,
 }
@@ -70,7 +73,15 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
             return None;
         }
         let measurement = deviations::settled(measurement, job.wanted);
-        Some(match fit(&measurement, job.wanted) {
+        let found = fit(&measurement, job.wanted).and_then(|scan| match &job.goal {
+            Some(goal) => prove(&measurement, scan, goal),
+            None => Ok(scan),
+        });
+        // A proof that an interrupt ended is not what was asked for; --resume makes it again.
+        if job.goal.is_some() && job.interrupt.load(Ordering::Relaxed) {
+            return None;
+        }
+        Some(match found {
             Ok(scan) => fitted(job, scan, &measurement),
             Err(_) if job.interrupt.load(Ordering::Relaxed) => return None,
             Err(error) => failed(job, &name, measurement.name.as_deref(), &error),
@@ -85,7 +96,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
 
 fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> ScanRecord {
     // Results have the same bits each time, so no time is part of them.
-    scan.elapsed = None;
+    scan.forget_times();
     let row = match job.rows {
         Rows::Objects => Written::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
         Rows::Cells => Written::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),

@@ -1,10 +1,13 @@
 //! The same bits with any number of threads, any vector instructions, and every time.
 
-use brdfit::engine::simd::Simd;
-use brdfit::engine::{FitOptions, Method, Outcome, Precision, fit};
+use brdfit::engine::simd::{FastEq14, Simd};
+use brdfit::engine::{FitOptions, Method, Outcome, Precision, blocks, fit};
 use brdfit_core::brdf::{ABSORBING, ALL, Brdf, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::{Geometry, Sample};
+use brdfit_core::lm::Problem;
 use brdfit_core::real::Real;
+use brdfit_core::residuals::{PART, Scan};
+use brdfit_core::search::{Region, Scene};
 use brdfit_suite::scan::six;
 
 /// Test data 1 of the paper with a made-up ripple of 5 % in place of noise; 37 samples, so the last block is not full.
@@ -115,4 +118,41 @@ fn seeds_change_the_search() {
     let options = cases()[2];
     let other = FitOptions { seed: 8, ..options };
     assert_ne!(bits(&on_threads(1, &options)), bits(&on_threads(1, &other)));
+}
+
+#[test]
+fn passes_over_a_large_scan_have_the_same_bits_on_any_number_of_threads() {
+    let once = scan();
+    // Two whole parts and a bit more.
+    let count = 2 * PART * 16 + 37;
+    let samples: Vec<Sample<f64>> = once.iter().cycle().take(count).copied().collect();
+    let blocks = blocks::<f64>(&samples).unwrap();
+    let whole = Scan::<f64, ALL, 6>::new(&blocks);
+    let bounds = Scan::<f64, ALL, 6>::usual_bounds();
+    let start = whole.candidate(&bounds, 1, 3, Region::Band(1));
+    let passes = |scene: &dyn Scene<f64, 6>| {
+        let (level, cost) = scene.level(&bounds, &start.x);
+        (
+            scene.cost(&start.x).to_bits(),
+            scene.linearize(&start.x),
+            level.map(f64::to_bits),
+            cost.to_bits(),
+            scene
+                .candidate(&bounds, 1, 7, Region::Band(1))
+                .x
+                .map(f64::to_bits),
+        )
+    };
+    let alone = passes(&whole);
+    for simd in Simd::available() {
+        let fast = FastEq14::<f64, ALL, 6>::new(whole, simd);
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| passes(&fast)), alone, "{simd:?}, {threads} threads");
+        }
+    }
+    // Fewer samples than a part are summed in one go, as ever.
+    let few = Scan::<f64, ALL, 6>::new(&blocks[..PART]);
+    assert_eq!(few.cost(&start.x).to_bits(), few.inlined_cost(&start.x).to_bits());
+    assert_ne!(whole.cost(&start.x).to_bits(), whole.inlined_cost(&start.x).to_bits());
 }

@@ -6,7 +6,7 @@
 
 use brdfit::analysis::bootstrap::Noise;
 use brdfit::analysis::misfit::mixture::matched;
-use brdfit::analysis::misfit::process::{Common, Point, Process, covariance, likelihood};
+use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
 use brdfit::engine::{self, FitOptions, Material};
 use brdfit_core::brdf::{DIFFUSE, SURFACE};
@@ -15,6 +15,15 @@ use brdfit_suite::scan::{left_out, scan, shared};
 use brdfit_suite::tolerance::{self, check};
 
 const COLUMNS: usize = 3;
+
+/// A residual of some line.
+struct Point {
+    angle: f64,
+    offset: f64,
+    line: usize,
+    residual: f64,
+    row: Vec<f64>,
+}
 
 /// The correlation of two residuals that are not the same one.
 fn kernel(process: Process, angle: f64) -> f64 {
@@ -78,6 +87,18 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         .map(|(line, &count)| (0..count).map(|k| point(line, k)).collect())
         .collect();
     let all: Vec<&Point> = lines.iter().flatten().collect();
+    let ends = lines.iter().scan(0, |end, line| {
+        *end += line.len();
+        Some(*end)
+    });
+    let residuals = Residuals {
+        angles: all.iter().map(|point| point.angle).collect(),
+        offsets: all.iter().map(|point| point.offset).collect(),
+        values: all.iter().map(|point| point.residual).collect(),
+        rows: all.iter().flat_map(|point| point.row.clone()).collect(),
+        columns: COLUMNS,
+        ends: ends.collect(),
+    };
     let rows: Vec<Vec<f64>> = all.iter().map(|point| point.row.clone()).collect();
     let degrees = (all.len() - COLUMNS) as f64;
     let (mut of_ln, mut of_covariance) = (0.0f64, 0.0f64);
@@ -115,13 +136,13 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         let explained: f64 = best.iter().zip(&j_r).map(|(x, y)| x[0] * y[0]).sum();
         let rest = normal[COLUMNS][COLUMNS] - explained;
         let expected = -0.5 * (degrees * rest.ln() + ln_v + ln_j);
-        let (ln, variance) = likelihood(&lines, process, degrees);
+        let (ln, variance) = likelihood(&residuals, process, degrees);
         of_ln = of_ln
             .max((ln - expected).abs())
             .max((variance * degrees / rest - 1.0).abs());
         assert!(before.replace(ln).is_none_or(|before: f64| (before - ln).abs() > 1e-3));
         // The sandwich: within lines, and with what lines have in common.
-        let mut common = Common::new(&lines);
+        let mut common = Common::new(&residuals);
         common.correlation = 0.6 * part;
         let shared = |a: &Point, b: &Point| {
             let own = if a.line == b.line {
@@ -132,8 +153,8 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
             own + 0.6 * kernel(process, a.offset - b.offset)
         };
         let pairs = [
-            (covariance(&lines, process, variance), v),
-            (common.covariance(&lines, process, variance), matrix(&shared)),
+            (covariance(&residuals, process, variance), v),
+            (common.covariance(&residuals, process, variance), matrix(&shared)),
         ];
         for (got, v) in pairs {
             let meat = product(&turned(&rows), &product(&v, &rows));

@@ -42,11 +42,18 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
     }
 
     fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
-        self.inlined_weigh(bounds, candidate);
+        self.weigh_by(bounds, candidate, |x| {
+            self.summed(|part| part.inlined_weights(x), Linearization::add_part)
+        });
     }
 
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        Self::levelled(bounds, x, self.inlined_totals(x))
+        let add = |sum: &mut [R; 3], part: &[R; 3]| {
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum += *part;
+            }
+        };
+        Self::levelled(bounds, x, self.summed(|part| part.inlined_totals(x), add))
     }
 
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
@@ -62,17 +69,6 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     pub(crate) const WEIGHTS_END: usize = end(&Self::WEIGHTS);
     /// Has the model an index of refraction? Then minima beside each other differ in it alone.
     const HAS_INDEX: bool = has_index(&M::PARAMETERS);
-
-    /// [`Scene::weigh`], compiled into its caller, for the vector instructions that the caller may use.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub fn inlined_weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
-        self.set_weights::<ALONE>(bounds, candidate);
-    }
-
-    /// [`Scene::weigh`], one lane after the other: the same bits from less code.
-    pub fn scalar_weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
-        self.set_weights::<true>(bounds, candidate);
-    }
 
     /// [`Scene::level`], given what [`Residuals::inlined_totals`] are at `x`.
     ///
@@ -104,28 +100,25 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         (bounds.clamp(levelled), cost)
     }
 
-    /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and the rank to its sum, less what it is at the lower bounds; one pass.
-    #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn set_weights<const SCALAR: bool>(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
+    /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and the rank to its sum, less what it is at the lower bounds; given what [`Residuals::inlined_weights`] are, which is one pass.
+    #[inline(always)]
+    pub fn weigh_by(
+        &self,
+        bounds: &Bounds<R, P>,
+        candidate: &mut Candidate<R, P>,
+        sums: impl FnOnce(&[R; P]) -> Linearization<R, P>,
+    ) {
         if candidate.waits == Waits::No {
             return;
         }
+        let x = &mut candidate.x;
+        let sums = sums(x);
+        candidate.passes += 1;
         if Self::WEIGHTS_END == 0 {
-            candidate.rank = if SCALAR {
-                self.scalar_cost(&candidate.x)
-            } else {
-                self.inlined_cost(&candidate.x)
-            };
-            candidate.passes += 1;
+            candidate.rank = sums.cost;
             candidate.waits = Waits::No;
             return;
         }
-        let x = &mut candidate.x;
-        let sums = if SCALAR {
-            self.scalar_sums(x, Want::Columns)
-        } else {
-            self.weight_sums(x)
-        };
         let roles = const { propose::roles(&M::PARAMETERS) };
         let (best, rank) = box_least_squares(&sums, &roles, bounds);
         for k in 0..P {
@@ -136,13 +129,32 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
         let again = candidate.waits == Waits::Fading && M::fade(x, bounds);
         *x = bounds.clamp(*x);
         candidate.rank = rank;
-        candidate.passes += 1;
         candidate.waits = if again { Waits::Weights } else { Waits::No };
     }
 
-    /// The normal equations of the weights: of f / f_measured of each weight at 1, times the block's weights, and of 1, times these.
-    #[inline(always)]
-    fn weight_sums(&self, x: &[R; P]) -> Linearization<R, P> {
+    /// [`Residuals::inlined_weights`], one lane after the other: the same bits from less code.
+    pub fn scalar_weights(&self, x: &[R; P]) -> Linearization<R, P> {
+        if Self::WEIGHTS_END == 0 {
+            return Linearization {
+                cost: self.scalar_cost(x),
+                ..Linearization::zero()
+            };
+        }
+        self.scalar_sums(x, Want::Columns)
+    }
+
+    /// The normal equations of the weights: of f / f_measured of each weight at 1, times the block's weights, and of 1, times these; of a model without weights its cost. Compiled into its caller, for the vector instructions that the caller may use.
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn inlined_weights(&self, x: &[R; P]) -> Linearization<R, P> {
+        if ALONE {
+            return self.scalar_weights(x);
+        }
+        if Self::WEIGHTS_END == 0 {
+            return Linearization {
+                cost: self.inlined_cost(x),
+                ..Linearization::zero()
+            };
+        }
         let pass = M::pass(x);
         let mut normal = [[[R::ZERO; SUMS]; WEIGHTS]; WEIGHTS];
         let mut gradient = [[R::ZERO; SUMS]; WEIGHTS];

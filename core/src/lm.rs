@@ -47,6 +47,17 @@ impl<R: Real, const P: usize> Linearization<R, P> {
             }
         }
     }
+
+    /// Adds the sums over other residuals.
+    pub fn add_part(&mut self, part: &Self) {
+        self.cost += part.cost;
+        for i in 0..P {
+            self.gradient[i] += part.gradient[i];
+            for j in 0..P {
+                self.hessian[i][j] += part.hessian[i][j];
+            }
+        }
+    }
 }
 
 /// A least-squares problem in `P` parameters.

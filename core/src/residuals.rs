@@ -101,6 +101,24 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'
         }
     }
 
+    /// Its parts of [`PART`] blocks.
+    pub fn parts(self) -> impl Iterator<Item = Self> {
+        self.blocks.chunks(PART).map(move |blocks| Residuals { blocks, ..self })
+    }
+
+    /// What `of` gives of each part, added in order.
+    #[inline(always)]
+    pub(crate) fn summed<S>(&self, of: impl Fn(&Self) -> S, add: impl Fn(&mut S, &S)) -> S {
+        // No microcontroller has memory for more than one.
+        if ALONE || self.blocks.len() <= PART {
+            return of(self);
+        }
+        let mut parts = self.parts();
+        let mut sum = of(&parts.next().unwrap_or(*self));
+        parts.for_each(|part| add(&mut sum, &of(&part)));
+        sum
+    }
+
     /// Its observations.
     pub fn blocks(&self) -> &'a [Block<R, LANES, C>] {
         self.blocks
@@ -166,7 +184,7 @@ pub(crate) fn total<R: Real>(x: &[R; SUMS]) -> R {
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Problem<R, P> for Residuals<'_, R, M, P, C> {
     fn cost(&self, x: &[R; P]) -> R {
-        self.inlined_cost(x)
+        self.summed(|part| part.inlined_cost(x), |sum, part| *sum += *part)
     }
 
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
@@ -174,9 +192,12 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Problem<R, P> f
     }
 
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        self.inlined_linearize(x)
+        self.summed(|part| part.inlined_linearize(x), Linearization::add_part)
     }
 }
+
+/// Blocks of which the sums are made in one go: those of a larger scan are the sums of its parts, added in order, so that threads can share the parts and change no bit.
+pub const PART: usize = 4096;
 
 impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R, M, P, C> {
     /// [`Problem::cost`], compiled into its caller, for the vector instructions that the caller may use.

@@ -110,7 +110,7 @@ pub fn blocks_of<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
 }
 
 /// Blocks as a scene.
-fn scene<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8>(
+fn scene<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VECTORS: u8>(
     blocks: &[Block<R, LANES, C>],
     simd: Simd,
 ) -> FastScan<'_, R, M, P, C, VECTORS> {

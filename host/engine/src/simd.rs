@@ -4,9 +4,10 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::Residuals;
+use brdfit_core::residuals::{PART, Residuals};
 use brdfit_core::search::{Candidate, Region, Scene};
-use pulp::NullaryFnOnce;
+pub use pulp::NullaryFnOnce;
+use rayon::prelude::*;
 
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +46,18 @@ impl Simd {
             #[cfg(target_arch = "x86_64")]
             Simd::V4(_) => pulp::x86::V3::try_new().map_or(Simd::Portable, Simd::V3),
             _ => Simd::Portable,
+        }
+    }
+
+    /// Runs a computation with these instructions, as far as it is compiled into [`NullaryFnOnce::call`].
+    #[inline(always)]
+    pub fn run<F: NullaryFnOnce>(self, computation: F) -> F::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Simd::V4(simd) => simd.vectorize(computation),
+            #[cfg(target_arch = "x86_64")]
+            Simd::V3(simd) => simd.vectorize(computation),
+            Simd::Portable => computation.call(),
         }
     }
 
@@ -108,21 +121,16 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce f
     }
 }
 
-struct Weigh<'a, R, M, const P: usize, const C: usize>(
-    &'a Residuals<'a, R, M, P, C>,
-    &'a Bounds<R, P>,
-    Candidate<R, P>,
-);
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Weigh<'_, R, M, P, C> {
-    type Output = Candidate<R, P>;
+struct Weights<'a, R, M, const P: usize, const C: usize>(&'a Residuals<'a, R, M, P, C>, &'a [R; P]);
+impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> NullaryFnOnce for Weights<'_, R, M, P, C> {
+    type Output = Linearization<R, P>;
     #[inline(always)]
-    fn call(mut self) -> Candidate<R, P> {
-        self.0.inlined_weigh(self.1, &mut self.2);
-        self.2
+    fn call(self) -> Linearization<R, P> {
+        self.0.inlined_weights(self.1)
     }
 }
 
-impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8>
+impl<'a, R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VECTORS: u8>
     FastScan<'a, R, M, P, C, VECTORS>
 {
     const DOUBLE: bool = size_of::<R>() == size_of::<f64>();
@@ -146,6 +154,30 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
         FastScan { scan, simd }
     }
 
+    /// What `of` gives of each part of the scan ([`PART`]), on the threads of the pool, added in order.
+    #[inline(always)]
+    fn summed<S: Send>(
+        &self,
+        of: impl Fn(&Residuals<'_, R, M, P, C>) -> S + Send + Sync,
+        add: impl Fn(&mut S, &S),
+    ) -> S {
+        if self.scan.blocks().len() <= PART {
+            return of(&self.scan);
+        }
+        let parts: Vec<_> = self.scan.parts().collect();
+        let mut sums: Vec<S> = parts.par_iter().map(of).collect();
+        let (first, others) = sums.split_at_mut(1);
+        others.iter().for_each(|part| add(&mut first[0], part));
+        sums.swap_remove(0)
+    }
+
+    fn totals(&self, x: &[R; P]) -> [R; 3] {
+        let of = |part: &Residuals<'_, R, M, P, C>| self.run(Sums(part, x), || part.scalar_totals(x));
+        self.summed(of, |sum, part| {
+            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += *part);
+        })
+    }
+
     /// A pass with vectors, or lane by lane where there are none.
     #[inline(always)]
     fn run<F: NullaryFnOnce>(&self, pass: F, scalar: impl FnOnce() -> F::Output) -> F::Output {
@@ -160,36 +192,35 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTO
     }
 }
 
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Problem<R, P>
+impl<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VECTORS: u8> Problem<R, P>
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn cost(&self, x: &[R; P]) -> R {
-        self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x))[0]
+        self.totals(x)[0]
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
-        self.run(Linearize(&self.scan, x), || self.scan.scalar_linearize(x))
+        let of = |part: &Residuals<'_, R, M, P, C>| self.run(Linearize(part, x), || part.scalar_linearize(x));
+        self.summed(of, Linearization::add_part)
     }
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         self.scan.bend(x, step, to)
     }
 }
 
-impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
+impl<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VECTORS: u8> Scene<R, P>
     for FastScan<'_, R, M, P, C, VECTORS>
 {
     fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         self.scan.propose(bounds, seed, i, region)
     }
     fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
-        let mut weighed = *candidate;
-        *candidate = self.run(Weigh(&self.scan, bounds, *candidate), || {
-            self.scan.scalar_weigh(bounds, &mut weighed);
-            weighed
+        self.scan.weigh_by(bounds, candidate, |x| {
+            let of = |part: &Residuals<'_, R, M, P, C>| self.run(Weights(part, x), || part.scalar_weights(x));
+            self.summed(of, Linearization::add_part)
         });
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {
-        let sums = self.run(Sums(&self.scan, x), || self.scan.scalar_totals(x));
-        Residuals::<R, M, P, C>::levelled(bounds, x, sums)
+        Residuals::<R, M, P, C>::levelled(bounds, x, self.totals(x))
     }
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
         self.scan.apart(x, y, factor)

@@ -16,6 +16,13 @@ pub fn above_t(t: f64, degrees: f64) -> f64 {
     0.5 * beta(degrees / (degrees + t * t), 0.5 * degrees, 0.5)
 }
 
+/// The density of Student's t of `degrees` degrees of freedom.
+pub fn density_of_t(degrees: f64) -> impl Fn(f64) -> f64 {
+    let half = 0.5 * (degrees + 1.0);
+    let top = 1.0 / (Real::sqrt(degrees) * Real::portable_exp((0.5 * degrees).ln_beta(0.5)));
+    move |t| top * Real::portable_exp(-half * libm::log1p(t * t / degrees))
+}
+
 /// The half width of the interval that holds Student's t with probability `level`; the normal distribution's for an infinite number of degrees of freedom, and infinite for none.
 pub fn within_t(level: f64, degrees: f64) -> f64 {
     if degrees.is_infinite() {

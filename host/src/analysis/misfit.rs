@@ -12,12 +12,13 @@ pub mod process;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
+use rayon::prelude::*;
 
 use super::profile::calibrate::threshold;
 use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
-use process::{Node, Point};
+use process::{Node, Residuals};
 
 /// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
 const EVIDENCE: f64 = 2.0;
@@ -48,61 +49,65 @@ fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Optio
         return None;
     }
     let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
-    let lines = points(samples, view, &axes, known.scale)?;
+    let mut all = residuals(samples, view, &axes, known.scale)?;
     let seen: Vec<bool> = (0..axes.len())
         .map(|k| {
-            let squares: f64 = lines.iter().flatten().map(|point| point.row[k] * point.row[k]).sum();
+            let squares: f64 = all.rows.iter().skip(k).step_by(axes.len()).map(|x| x * x).sum();
             (0.5..2.0).contains(&squares)
         })
         .collect();
     if !seen.contains(&true) {
         return None;
     }
-    let lines: Vec<Vec<Point>> = lines.into_iter().map(|line| kept(line, &seen)).collect();
-    let nodes = process::nodes(&lines, known.degrees_of_freedom, EVIDENCE)?;
+    all.keep(&seen);
+    let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
     Some(with(known, &inside, &seen, &nodes))
 }
 
+/// Residuals that a thread takes at once.
+const SHARE: usize = 4096;
+
 /// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite.
-fn points(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Vec<Vec<Point>>> {
+fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Residuals> {
     let slopes = View {
         material: view.material.off_zero(),
         ..*view
     };
-    let one = |line: usize, &(place, angle): &(usize, f64)| {
-        let sample = &samples[place];
-        let residual = view.residual(sample)?;
-        let gradient = slopes.gradient(sample)?.1;
-        let along = |axis: &&Values| {
-            let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
-            sum * sample.weight / scale
-        };
-        let row: Vec<f64> = axes.iter().map(along).collect();
-        let point = Point {
-            angle,
-            offset: angle - sample.theta_i,
-            line,
-            residual: residual / scale,
-            row,
-        };
-        let finite = point.residual.is_finite() && point.row.iter().all(|x| x.is_finite());
-        finite.then_some(point)
+    let mut all = Residuals {
+        columns: axes.len(),
+        ..Residuals::default()
     };
-    let lines = lines::of(samples);
-    let lines = lines.iter().enumerate();
-    lines
-        .map(|(number, line)| line.iter().map(|point| one(number, point)).collect())
-        .collect()
-}
-
-fn kept(line: Vec<Point>, seen: &[bool]) -> Vec<Point> {
-    let columns = |row: Vec<f64>| row.into_iter().zip(seen).filter(|(_, seen)| **seen).map(|(x, _)| x);
-    line.into_iter()
-        .map(|point| Point {
-            row: columns(point.row).collect(),
-            ..point
-        })
-        .collect()
+    let mut places = Vec::with_capacity(samples.len());
+    for line in lines::of(samples) {
+        for (place, angle) in line {
+            places.push(place);
+            all.angles.push(angle);
+            all.offsets.push(angle - samples[place].theta_i);
+        }
+        all.ends.push(places.len());
+    }
+    all.values.resize(places.len(), 0.0);
+    all.rows.resize(places.len() * axes.len(), 0.0);
+    let one = |place: usize, value: &mut f64, row: &mut [f64]| {
+        let sample = &samples[place];
+        *value = view.residual(sample)? / scale;
+        let gradient = slopes.gradient(sample)?.1;
+        for (x, axis) in row.iter_mut().zip(axes) {
+            let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
+            *x = sum * sample.weight / scale;
+        }
+        (value.is_finite() && row.iter().all(|x| x.is_finite())).then_some(())
+    };
+    let values = all.values.par_chunks_mut(SHARE);
+    let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
+    let shares = shares.zip(places.par_chunks(SHARE));
+    let whole = shares.map(|((values, rows), places)| {
+        let rows = rows.chunks_mut(axes.len());
+        let mut points = places.iter().zip(values.iter_mut().zip(rows));
+        points.try_for_each(|(&place, (value, row))| one(place, value, row))
+    });
+    whole.collect::<Option<()>>()?;
+    Some(all)
 }
 
 /// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.

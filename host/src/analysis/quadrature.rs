@@ -29,23 +29,80 @@ const GAUSS: [f64; 4] = [
 ];
 /// Halvings at most.
 const DEEPEST: u32 = 30;
+/// Parts that an interval may have from the first.
+const PARTS: usize = 15;
 
-/// The integrals over the parts between `ends`, ascending, to about `tolerance` of the largest of the first `judged` functions, or of `size` if that is larger.
+/// Places of one rule: the nodes on both sides, from the ends to the middle, and the middle once more, so that they go side by side through a formula.
+pub const PLACES: usize = 16;
+/// At each place its weights in Kronrod's and in Gauss's rule.
+const WEIGHTS: [[f64; PLACES]; 2] = {
+    let mut weights = [[0.0; PLACES]; 2];
+    let mut k = 0;
+    while k < PLACES - 1 {
+        weights[0][k] = KRONROD[k / 2];
+        if k / 2 % 2 == 1 {
+            weights[1][k] = GAUSS[k / 4];
+        }
+        k += 1;
+    }
+    weights
+};
+
+/// Some ascending ends of parts.
+pub struct Ends {
+    ends: [f64; PARTS + 1],
+    count: usize,
+}
+
+impl Ends {
+    /// `low`, the first of those of `inner` that lie between, in order, and `high`.
+    pub fn new(low: f64, high: f64, inner: impl IntoIterator<Item = f64>) -> Ends {
+        let mut all = Ends {
+            ends: [low; PARTS + 1],
+            count: 1,
+        };
+        for end in inner.into_iter().filter(|&x| low < x && x < high) {
+            // One place is kept for the end.
+            if all.count < PARTS {
+                all.insert(end);
+            }
+        }
+        all.insert(high);
+        all
+    }
+
+    fn insert(&mut self, end: f64) {
+        let place = self.ends[..self.count].partition_point(|&known| known < end);
+        if self.ends[..self.count].get(place) != Some(&end) {
+            self.ends.copy_within(place..self.count, place + 1);
+            self.ends[place] = end;
+            self.count += 1;
+        }
+    }
+
+    fn parts(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.ends[..self.count].windows(2).map(|ends| (ends[0], ends[1]))
+    }
+}
+
+/// The integrals over the parts between `ends`, to about `tolerance` of the largest of the first `judged` functions, or of `size` if that is larger.
 pub fn integrate<const N: usize>(
-    f: &mut impl FnMut(f64) -> [f64; N],
-    ends: &[f64],
+    f: &mut impl FnMut(&[f64; PLACES]) -> [[f64; PLACES]; N],
+    ends: &Ends,
     judged: usize,
     tolerance: f64,
     size: f64,
 ) -> [f64; N] {
     let largest = |sums: &[f64; N]| sums[..judged].iter().fold(0.0f64, |most, sum| most.max(sum.abs()));
-    let parts: Vec<(f64, f64)> = ends.windows(2).map(|ends| (ends[0], ends[1])).collect();
-    let first: Vec<_> = parts.iter().map(|&(a, b)| rule(f, a, b, judged)).collect();
+    let mut first = [([0.0; N], 0.0); PARTS];
     let mut sums = [0.0; N];
-    first.iter().for_each(|(part, _)| add(&mut sums, 1.0, part));
+    for ((a, b), known) in ends.parts().zip(&mut first) {
+        *known = rule(f, a, b, judged);
+        add(&mut sums, 1.0, &known.0);
+    }
     let error = tolerance * largest(&sums).max(size);
     let mut sums = [0.0; N];
-    for ((a, b), (part, worst)) in parts.into_iter().zip(first) {
+    for ((a, b), &(part, worst)) in ends.parts().zip(&first) {
         let part = if worst <= error {
             part
         } else {
@@ -60,7 +117,7 @@ pub fn integrate<const N: usize>(
 }
 
 fn halved<const N: usize>(
-    f: &mut impl FnMut(f64) -> [f64; N],
+    f: &mut impl FnMut(&[f64; PLACES]) -> [[f64; PLACES]; N],
     a: f64,
     b: f64,
     judged: usize,
@@ -79,19 +136,25 @@ fn halved<const N: usize>(
 }
 
 /// The integrals over one part, and the largest error of those that are judged: QUADPACK's, from how far both rules differ.
-fn rule<const N: usize>(f: &mut impl FnMut(f64) -> [f64; N], a: f64, b: f64, judged: usize) -> ([f64; N], f64) {
+fn rule<const N: usize>(
+    f: &mut impl FnMut(&[f64; PLACES]) -> [[f64; PLACES]; N],
+    a: f64,
+    b: f64,
+    judged: usize,
+) -> ([f64; N], f64) {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
-    let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
+    let mut places = [middle; PLACES];
     for (k, node) in NODES.into_iter().enumerate() {
-        for side in [-half, half] {
-            if node == 0.0 && side > 0.0 {
-                continue;
-            }
-            let value = f(middle + side * node);
-            add(&mut kronrod, half * KRONROD[k], &value);
-            if k % 2 == 1 {
-                add(&mut gauss, half * GAUSS[k / 2], &value);
-            }
+        places[2 * k] = middle - half * node;
+        places[2 * k + 1] = middle + half * node;
+    }
+    let values = f(&places);
+    let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
+    for place in 0..PLACES - 1 {
+        let [of_kronrod, of_gauss] = [half * WEIGHTS[0][place], half * WEIGHTS[1][place]];
+        for k in 0..N {
+            kronrod[k] += of_kronrod * values[k][place];
+            gauss[k] += of_gauss * values[k][place];
         }
     }
     let error = |k: usize| {

@@ -34,13 +34,17 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let (mut samples, mut lines) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut counts, mut faults) = (scan.left_out, Faults::default());
     let mut weights = weight::Count::default();
-    let mut deviations = Vec::new();
+    // Most files tell no deviations, and a million rows of none are much.
+    let (mut deviations, mut told) = (Vec::new(), true);
     for row in &scan.rows {
         let row = &turned_round(row, read_as.angles);
         match sample(row, &scan.places, &read_as, divisor, options) {
             Seen::Valid(sample, (kind, deviation)) => {
                 weights.add(kind);
-                deviations.push(deviation);
+                told &= deviation != Deviation::default();
+                if told {
+                    deviations.push(deviation);
+                }
                 samples.push(sample);
                 lines.push(row.line);
             }
@@ -69,8 +73,9 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let of_file = weights.normalise(&mut samples);
     let sigma_ln = of_file.or(scan.about.sigma_ln);
     // Weights alone tell no more; a table of the program's own has the deviations beside them.
-    let told = sigma_ln.is_some() && deviations.iter().all(|deviation| *deviation != Deviation::default());
-    deviations.retain(|_| told);
+    if !told || sigma_ln.is_none() {
+        deviations = Vec::new();
+    }
     let on_deviations = OnDeviations {
         absolute: options.absolute_sigma,
         correct_ln_bias: options.correct_ln_bias,

@@ -45,7 +45,7 @@ fn grouped(samples: &[Sample<f64>], key: impl Fn(&Sample<f64>) -> ([f64; 2], f64
             (line.map(|x| (x / SAME / 2.0).round() as i64), angle, place)
         })
         .collect();
-    all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    all.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
     let lines = all.chunk_by(|a, b| a.0 == b.0);
     lines
         .map(|line| line.iter().map(|&(_, angle, place)| (place, angle)).collect())

@@ -1,20 +1,49 @@
 //! The likelihood of a process with exponential correlation, and what it makes of a least-squares fit.
 
-use brdfit_core::real::Real;
+use std::ops::Range;
 
-/// A sample along its line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Point {
-    /// Where, radians, ascending along the line.
-    pub angle: f64,
-    /// How far from the specular direction of its line, radians.
-    pub offset: f64,
-    /// Which line it is of.
-    pub line: usize,
-    /// Its residual over the standard deviation of all.
-    pub residual: f64,
-    /// Its row of J in coordinates in which J'J is 1.
-    pub row: Vec<f64>,
+use brdfit_core::real::Real;
+use rayon::prelude::*;
+
+/// Residuals along lines, each with its row of J; one number after the other, for a scan may have a million samples.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// Where each is, radians, ascending along its line.
+    pub angles: Vec<f64>,
+    /// How far each is from the specular direction of its line, radians.
+    pub offsets: Vec<f64>,
+    /// The residuals over the standard deviation of all.
+    pub values: Vec<f64>,
+    /// The rows of J, one after the other, in coordinates in which J'J is 1.
+    pub rows: Vec<f64>,
+    /// Numbers in a row.
+    pub columns: usize,
+    /// Where the lines end.
+    pub ends: Vec<usize>,
+}
+
+impl Residuals {
+    /// The places of each line.
+    pub fn lines(&self) -> impl Iterator<Item = Range<usize>> {
+        let begins = std::iter::once(0).chain(self.ends.iter().copied());
+        begins.zip(&self.ends).map(|(begin, &end)| begin..end)
+    }
+
+    /// The row of J at a place.
+    pub fn row(&self, place: usize) -> &[f64] {
+        &self.rows[place * self.columns..][..self.columns]
+    }
+
+    /// Drops the columns that are not kept.
+    pub fn keep(&mut self, kept: &[bool]) {
+        let mut place = 0;
+        self.rows.retain(|_| {
+            let keep = kept[place % kept.len()];
+            place += 1;
+            keep
+        });
+        self.columns = kept.iter().filter(|kept| **kept).count();
+    }
 }
 
 /// A stationary process beside noise of each sample.
@@ -51,32 +80,41 @@ const RARE: f64 = 1.5;
 const LEAST_COMMON: f64 = 0.1;
 /// No process is longer than this part of a line: beyond, it is a factor of all values, of which residuals say nothing.
 const LONGEST: f64 = 0.34;
+/// From so many residuals on the threads of the pool share the processes.
+const MANY: usize = 4096;
 /// (1 + x) exp(-x) is 1/e here.
 const SMOOTH: f64 = 2.146_193_220_620_582_6;
 
 /// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`.
-pub fn nodes(lines: &[Vec<Point>], degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
-    let lengths = lengths(lines)?;
+pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
+    let lengths = lengths(all)?;
     let degrees = degrees_of_freedom as f64;
     let independent = Process {
         length: f64::MIN_POSITIVE,
         part: 0.0,
         smooth: false,
     };
-    let all = |step: usize, parts: &[f64]| -> Vec<Process> {
+    let processes = |step: usize, parts: &[f64]| -> Vec<Process> {
         let of = |length: f64| parts.iter().map(move |&part| (length, part));
         let pairs = lengths.iter().step_by(step).flat_map(|&length| of(length));
         let both = pairs.flat_map(|(length, part)| [false, true].map(|smooth| Process { length, part, smooth }));
         both.collect()
     };
-    let judged = |process: Process| (process, likelihood(lines, process, degrees));
+    let judged = |process: Process| (process, likelihood(all, process, degrees));
+    let judged_all = |processes: Vec<Process>| -> Vec<_> {
+        match all.values.len() < MANY {
+            true => processes.into_iter().map(judged).collect(),
+            false => processes.into_par_iter().map(judged).collect(),
+        }
+    };
     let null = judged(independent);
-    let first = all(2, &FIRST).into_iter().map(|process| judged(process).1.0);
-    let most = first.fold(f64::NEG_INFINITY, f64::max);
+    let first = judged_all(processes(2, &FIRST));
+    let most = first.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
     if !(most > null.1.0 + evidence) {
         return None;
     }
-    let list: Vec<_> = all(1, &PARTS).into_iter().map(judged).chain([null]).collect();
+    let mut list = judged_all(processes(1, &PARTS));
+    list.push(null);
     // Independence counts as much as all else together.
     let others = Real::portable_ln(list.len() as f64 - 1.0);
     let best = list.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
@@ -89,56 +127,53 @@ pub fn nodes(lines: &[Vec<Point>], degrees_of_freedom: usize, evidence: f64) -> 
     };
     let total: f64 = list.iter().map(share).sum();
     let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
-    let common = Common::new(lines);
+    let common = Common::new(all);
     let total: f64 = kept.iter().map(|one| share(one)).sum();
     let node = |one: &&(Process, (f64, f64))| Node {
         process: one.0,
         weight: share(one) / total,
-        covariance: common.covariance(lines, one.0, one.1.1),
+        covariance: common.covariance(all, one.0, one.1.1),
     };
     Some(kept.iter().map(node).collect())
 }
 
 /// Lengths from a step to a part of the longest line, each 1.6 times the last; `None` without lines of two.
-fn lengths(lines: &[Vec<Point>]) -> Option<Vec<f64>> {
-    let step = step_of(lines)?;
-    let span = lines
-        .iter()
-        .filter_map(|line| Some(line.last()?.angle - line.first()?.angle));
+fn lengths(all: &Residuals) -> Option<Vec<f64>> {
+    let step = step_of(all)?;
+    let span = all.lines().filter(|line| !line.is_empty());
+    let span = span.map(|line| all.angles[line.end - 1] - all.angles[line.start]);
     let most = LONGEST * span.fold(0.0, f64::max);
     let grown = std::iter::successors(Some(0.7 * step), |length| Some(1.6 * length));
     Some(grown.take_while(|&length| length <= most).collect())
 }
 
 /// The median angle between neighbours.
-fn step_of(lines: &[Vec<Point>]) -> Option<f64> {
-    let pairs = lines.iter().flat_map(|line| line.windows(2));
-    let mut steps: Vec<f64> = pairs
-        .map(|pair| pair[1].angle - pair[0].angle)
-        .filter(|&step| step > 0.0)
-        .collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied()
+fn step_of(all: &Residuals) -> Option<f64> {
+    let pairs = all.lines().flat_map(|line| all.angles[line].windows(2));
+    let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// ln of the restricted likelihood of the residuals, but for a constant, and the variance that fits best; `degrees` is their number less that of the columns.
 ///
 /// Kalman's filter gives what each sample brings anew, for the residuals and each column of J alike: the state is the process and its slope times its length.
-pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64, f64) {
-    let columns = lines.iter().flatten().next().map_or(0, |point| point.row.len());
+pub fn likelihood(all: &Residuals, process: Process, degrees: f64) -> (f64, f64) {
+    let columns = all.columns;
     let part = process.part;
     let mut sums = vec![vec![0.0; columns + 1]; columns + 1];
     let mut ln_determinant = 0.0;
     let mut state = vec![[0.0; 2]; columns + 1];
     let mut fresh = vec![0.0; columns + 1];
-    for line in lines {
+    for line in all.lines() {
         state.fill([0.0; 2]);
         // What the variance of the state is less than at rest.
         let mut known = [0.0; 3];
         let mut before: Option<f64> = None;
-        for point in line {
-            let step = before.map_or([[0.0; 2]; 2], |before| step(point.angle - before, process));
-            before = Some(point.angle);
+        for place in line {
+            let (angle, row) = (all.angles[place], all.row(place));
+            let step = before.map_or([[0.0; 2]; 2], |before| step(angle - before, process));
+            before = Some(angle);
             let [[a, b], [c, d]] = step;
             known = [
                 a * a * known[0] + 2.0 * a * b * known[1] + b * b * known[2],
@@ -149,7 +184,7 @@ pub fn likelihood(lines: &[Vec<Point>], process: Process, degrees: f64) -> (f64,
             let total = variance[0] + 1.0 - part;
             ln_determinant += Real::portable_ln(total);
             let gain = variance.map(|x| x / total);
-            let column = |k: usize| if k == columns { point.residual } else { point.row[k] };
+            let column = |k: usize| if k == columns { all.values[place] } else { row[k] };
             for k in 0..=columns {
                 let [value, slope] = state[k];
                 let (value, slope) = (a * value + b * slope, c * value + d * slope);
@@ -195,83 +230,118 @@ fn step(angle: f64, process: Process) -> [[f64; 2]; 2] {
 
 /// What all lines have in common: a misfit of the model is alike at equal angles from the specular direction.
 pub struct Common {
-    /// All points in order of their offset.
-    merged: Vec<Point>,
+    /// All places in order of their offset; none where there is one line.
+    merged: Vec<usize>,
     /// Correlation of residuals of different lines at the same offset, at least 0.
     pub correlation: f64,
 }
 
 impl Common {
     /// Of these lines.
-    pub fn new(lines: &[Vec<Point>]) -> Self {
-        let mut merged: Vec<Point> = lines.iter().flatten().cloned().collect();
-        merged.sort_by(|a, b| a.offset.total_cmp(&b.offset).then(a.line.cmp(&b.line)));
-        merged.iter_mut().for_each(|point| point.angle = point.offset);
-        let near = 0.5 * step_of(lines).unwrap_or(0.0) + 1e-9;
+    pub fn new(all: &Residuals) -> Self {
+        let mut common = Common {
+            merged: Vec::new(),
+            correlation: 0.0,
+        };
+        if all.ends.len() < 2 {
+            return common;
+        }
+        let mut line_of = vec![0; all.values.len()];
+        for (number, line) in all.lines().enumerate() {
+            line_of[line].fill(number);
+        }
+        common.merged.extend(0..all.values.len());
+        common
+            .merged
+            .sort_unstable_by(|&a, &b| all.offsets[a].total_cmp(&all.offsets[b]).then(a.cmp(&b)));
+        let near = 0.5 * step_of(all).unwrap_or(0.0) + 1e-9;
         let mut sums = [0.0; 3];
-        for (place, a) in merged.iter().enumerate() {
-            let others = merged[place + 1..].iter().take_while(|b| b.offset - a.offset <= near);
-            for b in others.filter(|b| b.line != a.line) {
-                let pairs = [
-                    a.residual * b.residual,
-                    a.residual * a.residual,
-                    b.residual * b.residual,
-                ];
+        for (place, &a) in common.merged.iter().enumerate() {
+            let others = common.merged[place + 1..].iter();
+            let others = others.take_while(|&&b| all.offsets[b] - all.offsets[a] <= near);
+            for &b in others.filter(|&&b| line_of[b] != line_of[a]) {
+                let (x, y) = (all.values[a], all.values[b]);
+                let pairs = [x * y, x * x, y * y];
                 sums.iter_mut().zip(pairs).for_each(|(sum, pair)| *sum += pair);
             }
         }
         let correlation = sums[0] / Real::sqrt(sums[1] * sums[2]);
-        Common {
-            merged,
-            correlation: if correlation > LEAST_COMMON { correlation } else { 0.0 },
-        }
+        common.correlation = if correlation > LEAST_COMMON { correlation } else { 0.0 };
+        common
     }
 
     /// The sandwich of the least-squares fit.
-    pub fn covariance(&self, lines: &[Vec<Point>], process: Process, variance: f64) -> Vec<Vec<f64>> {
-        let own = covariance(lines, process, variance);
+    pub fn covariance(&self, all: &Residuals, process: Process, variance: f64) -> Vec<Vec<f64>> {
+        let own = covariance(all, process, variance);
         if self.correlation == 0.0 || process.part == 0.0 {
             return own;
         }
         // The noise of each sample is in no other line.
         let part = (self.correlation / process.part).min(1.0);
-        let all = covariance(std::slice::from_ref(&self.merged), process, variance);
-        let both = own.iter().zip(&all);
+        let mut sums = Sandwich::new(all, &all.offsets, process);
+        sums.add(self.merged.iter().copied());
+        let together = sums.times(variance);
+        let both = own.iter().zip(&together);
         both.map(|(own, all)| own.iter().zip(all).map(|(own, all)| own + part * (all - own)).collect())
             .collect()
     }
 }
 
 /// The sandwich of the least-squares fit where lines have nothing in common.
-pub fn covariance(lines: &[Vec<Point>], process: Process, variance: f64) -> Vec<Vec<f64>> {
-    let columns = lines.iter().flatten().next().map_or(0, |point| point.row.len());
-    let mut sums = vec![vec![0.0; columns]; columns];
-    // The rows before, by their correlation with the next, and by its change.
-    let mut before = vec![[0.0; 2]; columns];
-    for line in lines {
-        before.fill([0.0; 2]);
-        let mut last: Option<&Point> = None;
-        for point in line {
+pub fn covariance(all: &Residuals, process: Process, variance: f64) -> Vec<Vec<f64>> {
+    let mut sums = Sandwich::new(all, &all.angles, process);
+    all.lines().for_each(|line| sums.add(line));
+    sums.times(variance)
+}
+
+/// The sum of J'VJ, line by line.
+struct Sandwich<'a> {
+    all: &'a Residuals,
+    angles: &'a [f64],
+    process: Process,
+    sums: Vec<Vec<f64>>,
+}
+
+impl<'a> Sandwich<'a> {
+    fn new(all: &'a Residuals, angles: &'a [f64], process: Process) -> Self {
+        Sandwich {
+            all,
+            angles,
+            process,
+            sums: vec![vec![0.0; all.columns]; all.columns],
+        }
+    }
+
+    /// Adds a line, whose angles ascend.
+    fn add(&mut self, line: impl Iterator<Item = usize>) {
+        let columns = self.all.columns;
+        // The rows before, by their correlation with the next, and by its change.
+        let mut before = vec![[0.0; 2]; columns];
+        let mut last: Option<usize> = None;
+        for place in line {
             if let Some(last) = last {
                 // The correlation over x is the first row of the step; with a row more it is that of the sum.
-                let [[a, b], [c, d]] = step(point.angle - last.angle, process);
-                for (sum, row) in before.iter_mut().zip(&last.row) {
+                let [[a, b], [c, d]] = step(self.angles[place] - self.angles[last], self.process);
+                for (sum, row) in before.iter_mut().zip(self.all.row(last)) {
                     let [value, slope] = [sum[0] + row, sum[1]];
                     *sum = [a * value + b * slope, c * value + d * slope];
                 }
             }
-            last = Some(point);
+            last = Some(place);
+            let row = self.all.row(place);
             for i in 0..columns {
                 for j in 0..columns {
-                    let crossed = point.row[i] * before[j][0] + before[i][0] * point.row[j];
-                    sums[i][j] += point.row[i] * point.row[j] + process.part * crossed;
+                    let crossed = row[i] * before[j][0] + before[i][0] * row[j];
+                    self.sums[i][j] += row[i] * row[j] + self.process.part * crossed;
                 }
             }
         }
     }
-    sums.iter()
-        .map(|row| row.iter().map(|x| variance * x).collect())
-        .collect()
+
+    fn times(&self, variance: f64) -> Vec<Vec<f64>> {
+        let row = |row: &Vec<f64>| row.iter().map(|x| variance * x).collect();
+        self.sums.iter().map(row).collect()
+    }
 }
 
 /// The lower triangle whose product with its transpose is a symmetric matrix without negative eigenvalues; a pivot that rounding takes below 0 is a small one.

@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
-use brdfit_core::brdf::fresnel;
+use brdfit_core::brdf::Reflecting;
+use brdfit_core::pack::Pack;
 use brdfit_core::real::Real;
 
-use crate::analysis::quadrature::integrate;
+use crate::analysis::quadrature::{Ends, PLACES, integrate};
 use crate::engine::Values;
+use crate::engine::simd::{NullaryFnOnce, Simd};
 use crate::engine::uncertainty::NEAR_ZERO;
 
 /// Slopes farther out, in units of m, hold 1e-13 of the facets.
@@ -17,15 +19,17 @@ const INNER: f64 = 1e-7;
 const OUTER: f64 = 1e-6;
 
 /// Surface and volume lobe of rho = 1, then their derivatives by m, n and kappa.
-type Lobes = [f64; 8];
+const LOBES: usize = 8;
 
 /// The direction of incidence and the facets.
 struct Facets {
     sin_i: f64,
     cos_i: f64,
     m: f64,
-    n: f64,
-    kappa: f64,
+    surface: Reflecting<f64>,
+    /// The same where the derivative by kappa is not 0, if kappa is.
+    off_zero: Option<Reflecting<f64>>,
+    simd: Simd,
 }
 
 /// The reflectance and its derivatives, that by kappa at [`NEAR_ZERO`] where kappa is 0; the parameters in the order of [`brdfit_core::brdf::NAMES`].
@@ -39,8 +43,9 @@ pub fn of_eq_14([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (
         cos_i,
         // Without lobes any m does.
         m: if m > 0.0 { m } else { 1.0 },
-        n,
-        kappa,
+        surface: Reflecting::new(n, kappa),
+        off_zero: (kappa == 0.0).then(|| Reflecting::new(n, NEAR_ZERO)),
+        simd: Simd::best(),
     };
     let sums = facets.lobes();
     let both = |k: usize| rho_s * sums[2 * k] + rho_v * sums[2 * k + 1];
@@ -49,7 +54,7 @@ pub fn of_eq_14([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (
 }
 
 impl Facets {
-    fn lobes(&self) -> Lobes {
+    fn lobes(&self) -> [f64; LOBES] {
         let widest = (EXTENT * self.m).min(1.0 / self.cos_i);
         // Across the plane of incidence: where kinks along it meet, and what the Gaussian is wide.
         let tan_i = self.sin_i / self.cos_i;
@@ -62,16 +67,22 @@ impl Facets {
             2.5 * self.m,
         ];
         let mut largest = 0.0f64;
-        let mut across = |b: f64| {
-            let sums = self.along(b, 1e-3 * largest);
-            largest = largest.max(sums[0]).max(sums[1]);
+        let mut across = |places: &[f64; PLACES]| {
+            let mut sums = [[0.0; PLACES]; LOBES];
+            for (place, &b) in places.iter().enumerate().take(PLACES - 1) {
+                let along = self.along(b, 1e-3 * largest);
+                largest = largest.max(along[0]).max(along[1]);
+                for (sum, one) in sums.iter_mut().zip(along) {
+                    sum[place] = one;
+                }
+            }
             sums
         };
-        integrate(&mut across, &parts(0.0, widest, &kinks), 2, OUTER, 0.0)
+        integrate(&mut across, &Ends::new(0.0, widest, kinks), 2, OUTER, 0.0)
     }
 
     /// The integral over the slopes in the plane of incidence, with `b` across it.
-    fn along(&self, b: f64, size: f64) -> Lobes {
+    fn along(&self, b: f64, size: f64) -> [f64; LOBES] {
         let (sin_i, cos_i) = (self.sin_i, self.cos_i);
         // cos theta_s = 0 where cos ti a^2 - 2 sin ti a + cos ti (b^2 - 1) = 0.
         let middle = sin_i / cos_i;
@@ -79,55 +90,100 @@ impl Facets {
         let low = ((b * b - 1.0) / (middle + reach)).max(-EXTENT * self.m);
         let high = (middle + reach).min(EXTENT * self.m);
         if low >= high {
-            return [0.0; 8];
+            return [0.0; LOBES];
         }
         let m = self.m;
-        let mut kinks = vec![0.0, m, -m, 2.5 * m, -2.5 * m];
-        self.kinks(b, &mut kinks);
-        integrate(&mut |a| self.integrand(a, b), &parts(low, high, &kinks), 2, INNER, size)
+        let kinks = [0.0, m, -m, 2.5 * m, -2.5 * m];
+        let kinks = kinks.into_iter().chain(self.kinks(b).into_iter().flatten());
+        let mut integrand = |places: &[f64; PLACES]| {
+            self.simd.run(Integrand {
+                facets: self,
+                places,
+                b,
+            })
+        };
+        integrate(&mut integrand, &Ends::new(low, high, kinks), 2, INNER, size)
     }
 
     /// Where the masking along the plane of incidence has kinks.
-    fn kinks(&self, b: f64, list: &mut Vec<f64>) {
+    fn kinks(&self, b: f64) -> [Option<f64>; 6] {
         let (sin_i, cos_i) = (self.sin_i, self.cos_i);
         if sin_i < 1e-8 {
-            return;
+            return [None; 6];
         }
-        // G leaves 1 at 2 cos theta_h cos theta_i = cos theta_d.
-        list.push(cos_i / sin_i);
         // theta_s = theta_i where cos ti a^2 - sin ti a + cos ti b^2 = 0.
         let square = sin_i * sin_i - 4.0 * cos_i * cos_i * b * b;
-        if square > 0.0 {
-            let sum = sin_i + Real::sqrt(square);
-            list.extend([sum / (2.0 * cos_i), 2.0 * cos_i * b * b / sum]);
-        }
+        let sum = (square > 0.0).then(|| sin_i + Real::sqrt(square));
         // 2 cos theta_h cos theta_s = cos theta_d where (cos ti + sin ti a) (3 - a^2 - b^2) = 2 cos ti (1 + a^2 + b^2).
-        list.extend(cubic(
-            3.0 * cos_i / sin_i,
-            b * b - 3.0,
-            cos_i * (3.0 * b * b - 1.0) / sin_i,
-        ));
-    }
-
-    fn integrand(&self, a: f64, b: f64) -> Lobes {
-        let slope2 = a * a + b * b;
-        let r2 = slope2 / (self.m * self.m);
-        let cos_h = 1.0 / Real::sqrt(1.0 + slope2);
-        let cos_d = (self.cos_i + self.sin_i * a) * cos_h;
-        let cos_s = 2.0 * cos_d * cos_h - self.cos_i;
-        if cos_d <= 0.0 || cos_s <= 0.0 {
-            return [0.0; 8];
-        }
-        // For both halves across.
-        let share = 2.0 * Real::portable_exp(-r2) / (PI * self.m * self.m) * cos_d / cos_h;
-        let masking = (2.0 * cos_h * self.cos_i.min(cos_s) / cos_d).min(1.0);
-        let (f, d_n, mut d_kappa) = fresnel(cos_d.min(1.0), self.n, self.kappa);
-        if self.kappa == 0.0 {
-            d_kappa = fresnel(cos_d.min(1.0), self.n, NEAR_ZERO).2;
-        }
-        let (surface, volume) = (share * masking / self.cos_i, share * 4.0 * cos_s);
-        let by_m = f * (r2 - 1.0) * 2.0 / self.m;
+        let [one, two, three] = cubic(3.0 * cos_i / sin_i, b * b - 3.0, cos_i * (3.0 * b * b - 1.0) / sin_i);
         [
+            // G leaves 1 at 2 cos theta_h cos theta_i = cos theta_d.
+            Some(cos_i / sin_i),
+            sum.map(|sum| sum / (2.0 * cos_i)),
+            sum.map(|sum| 2.0 * cos_i * b * b / sum),
+            one,
+            two,
+            three,
+        ]
+    }
+}
+
+/// The lobes at some slopes along the plane of incidence, side by side.
+struct Integrand<'a> {
+    facets: &'a Facets,
+    places: &'a [f64; PLACES],
+    b: f64,
+}
+
+/// Places that go through a formula together, as in the passes of a fit.
+const TOGETHER: usize = 2;
+
+impl NullaryFnOnce for Integrand<'_> {
+    type Output = [[f64; PLACES]; LOBES];
+
+    #[inline(always)]
+    fn call(self) -> [[f64; PLACES]; LOBES] {
+        let mut all = [[0.0; PLACES]; LOBES];
+        for lane in 0..PLACES / TOGETHER {
+            let a = Pack::<f64, TOGETHER>::gather(self.places, lane);
+            let lobes = self.facets.integrand(a, self.b);
+            for half in 0..TOGETHER {
+                for k in 0..LOBES {
+                    all[k][lane + half * (PLACES / TOGETHER)] = lobes[k].0[half];
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Facets {
+    #[inline(always)]
+    fn integrand(&self, a: Pack<f64, TOGETHER>, b: f64) -> [Pack<f64, TOGETHER>; LOBES] {
+        let m2 = self.m * self.m;
+        let slope2 = a * a + b * b;
+        let r2 = slope2 / m2;
+        let cos_h = slope2.map(|slope2| 1.0 / (1.0 + slope2).sqrt());
+        let cos_d = (a * self.sin_i).map(|a| self.cos_i + a) * cos_h;
+        let cos_s = cos_d.zip(cos_h, |cos_d, cos_h| 2.0 * cos_d * cos_h - self.cos_i);
+        // Other facets send no light above the horizon.
+        let lit = cos_d.zip(
+            cos_s,
+            |cos_d, cos_s| if cos_d <= 0.0 || cos_s <= 0.0 { 0.0 } else { 1.0 },
+        );
+        // For both halves across.
+        let share = r2.map(|r2| -r2).exp() * 2.0 / (PI * self.m * self.m) * cos_d / cos_h;
+        let least = cos_s.map(|cos_s| Real::min(self.cos_i, cos_s));
+        let masking = (cos_h * 2.0 * least / cos_d).map(|masking| Real::min(masking, 1.0));
+        let cos_d = cos_d.map(|cos_d| Real::min(cos_d, 1.0));
+        let [f, d_n, d_kappa] = self.surface.at(cos_d);
+        let d_kappa = match &self.off_zero {
+            None => d_kappa,
+            Some(surface) => surface.at(cos_d)[2],
+        };
+        let (surface, volume) = (share * masking / self.cos_i, share * (cos_s * 4.0));
+        let by_m = f * r2.map(|r2| r2 - 1.0) * 2.0 / self.m;
+        let mut lobes = [
             surface * f,
             volume * f,
             surface * by_m,
@@ -136,21 +192,16 @@ impl Facets {
             volume * d_n,
             surface * d_kappa,
             volume * d_kappa,
-        ]
+        ];
+        for lobe in &mut lobes {
+            *lobe = lobe.zip(lit, |lobe, lit| if lit > 0.0 { lobe } else { 0.0 });
+        }
+        lobes
     }
 }
 
-/// `low`, those of `inner` that lie between, in order, and `high`.
-fn parts(low: f64, high: f64, inner: &[f64]) -> Vec<f64> {
-    let mut ends: Vec<f64> = inner.iter().copied().filter(|&x| low < x && x < high).collect();
-    ends.extend([low, high]);
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
-    ends
-}
-
 /// The real roots of x^3 + c2 x^2 + c1 x + c0 (Press et al. 2007, section 5.6).
-fn cubic(c2: f64, c1: f64, c0: f64) -> Vec<f64> {
+fn cubic(c2: f64, c1: f64, c0: f64) -> [Option<f64>; 3] {
     let q = (c2 * c2 - 3.0 * c1) / 9.0;
     let r = (2.0 * c2 * c2 * c2 - 9.0 * c2 * c1 + 27.0 * c0) / 54.0;
     let less = r * r - q * q * q;
@@ -158,10 +209,10 @@ fn cubic(c2: f64, c1: f64, c0: f64) -> Vec<f64> {
         let root = Real::sqrt(q);
         let angle = libm::acos((r / (q * root)).clamp(-1.0, 1.0));
         let one = |turn: f64| -2.0 * root * Real::portable_sin_cos((angle + 2.0 * PI * turn) / 3.0).1 - c2 / 3.0;
-        vec![one(0.0), one(1.0), one(2.0)]
+        [0.0, 1.0, 2.0].map(|turn| Some(one(turn)))
     } else {
         let a = -libm::copysign(libm::cbrt(r.abs() + Real::sqrt(less)), r);
         let b = if a == 0.0 { 0.0 } else { q / a };
-        vec![a + b - c2 / 3.0]
+        [Some(a + b - c2 / 3.0), None, None]
     }
 }

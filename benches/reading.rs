@@ -110,6 +110,122 @@ fn zemax(cells: usize) -> Vec<u8> {
     (text + "DataEnd\n").into_bytes()
 }
 
+/// Angles of incidence of the files below, degrees.
+const INCIDENCE: [usize; 4] = [10, 30, 50, 70];
+
+/// Scattering angles of so many rows at each angle of incidence, with a BRDF each.
+fn sweeps(rows: usize) -> impl Iterator<Item = (usize, Vec<(f64, f64)>)> {
+    let count = rows / INCIDENCE.len();
+    let step = 160.0 / count as f64;
+    INCIDENCE.into_iter().map(move |theta_i| {
+        let each = (0..count).map(|k| (k as f64 * step - 80.0, row(theta_i * count + k).2));
+        (theta_i, each.collect())
+    })
+}
+
+fn fred(rows: usize) -> Vec<u8> {
+    let mut text = String::from("type bsdf_data\nformat angles=deg bsdf=value scale=1\n");
+    for (theta_i, sweep) in sweeps(rows) {
+        let _ = writeln!(text, "{theta_i}\t0");
+        for (theta_s, f) in sweep {
+            let _ = writeln!(text, "{theta_s:.5}\t0\t{f:.6}");
+        }
+    }
+    text.into_bytes()
+}
+
+fn lumos(rows: usize) -> Vec<u8> {
+    let mut text = String::from("# phi_i     theta_i     phi_o     theta_o     brdf\n");
+    for (theta_i, sweep) in sweeps(rows) {
+        for (theta_s, f) in sweep {
+            let _ = writeln!(text, "{theta_i}     -180.00     {theta_s:.5}     0.00     {f:.5e}");
+        }
+    }
+    text.into_bytes()
+}
+
+/// One angle of incidence, as the format has it.
+fn pabopto(rows: usize) -> Vec<u8> {
+    let mut text = String::from("#data written using a test\n#format: theta phi BRDF\n#intheta 30\n#inphi 0\n");
+    for k in 0..rows {
+        let _ = writeln!(text, "{:.5} 180 {:.6}", k as f64 * 80.0 / rows as f64, row(k).2);
+    }
+    text.into_bytes()
+}
+
+/// Scattering angles and two azimuths at each angle of incidence.
+fn ssdd(cells: usize) -> Vec<u8> {
+    let count = cells / (2 * INCIDENCE.len());
+    let mut text = String::from(
+        "VERSION 0.2\nDATA_TYPE brdf\nCOLOR_MODEL monochrome\nPARAM_TYPE spherical_coordinate_system\nREDUCTION_TYPE bilateral_symmetry\nPARAM0_LIST",
+    );
+    INCIDENCE.iter().for_each(|theta_i| text += &format!(" {theta_i}"));
+    text += "\nPARAM1_LIST 0\nPARAM2_LIST";
+    (0..count).for_each(|k| text += &format!(" {:.5}", k as f64 * 80.0 / count as f64));
+    text += "\nPARAM3_LIST 0 180\nDATA ascii\n";
+    (0..cells).for_each(|k| text += &format!("{:.6} ", row(k).2));
+    (text + "\n").into_bytes()
+}
+
+/// Scattering angles and three azimuths at one angle of incidence.
+fn lighttools(cells: usize) -> Vec<u8> {
+    let count = cells / 3;
+    let mut text = format!(
+        "Symmetry PlaneSymmetrical\nSpectralContent Monochrome\nScatterAzimuth 3\n0 90 180\nScatterRadial {count}\n"
+    );
+    (0..count).for_each(|k| text += &format!("{:.5} ", k as f64 * 80.0 / count as f64));
+    text += "\nDataBegin\nAOI 30\nPOI 90\nSide Front\nWavelength 550\nScatterType BRDF\nTIS 0.5\n";
+    for line in 0..3 {
+        (0..count).for_each(|k| text += &format!("{:.6} ", row(line * count + k).2));
+        text.push('\n');
+    }
+    (text + "DataEnd\n").into_bytes()
+}
+
+/// Scattering angles and four azimuths at one angle of incidence.
+fn speos(cells: usize) -> Vec<u8> {
+    let count = cells / 4;
+    let mut text = format!(
+        "OPTIS - brdf surface file v8.0\n0\nmade up\n5\n-----\n1\t1\n1\n1\t1\n30\n550\n20\n{count}\t4\n\t0\t90\t180\t270\n"
+    );
+    for k in 0..count {
+        let _ = write!(text, "{:.5}", k as f64 * 80.0 / count as f64);
+        (0..4).for_each(|azimuth| text += &format!("\t{:.6}", row(k * 4 + azimuth).2));
+        text.push('\n');
+    }
+    (text + "End of file\n").into_bytes()
+}
+
+/// Columns of numbers in JSON.
+fn bird(rows: usize) -> Vec<u8> {
+    let list = |of: &dyn Fn(usize) -> f64| -> String {
+        let values: Vec<String> = (0..rows).map(|k| format!("{:.6}", of(k))).collect();
+        values.join(", ")
+    };
+    let column = |name: &str, kind: &str, unit: &str, values: String| {
+        format!("\"{name}\": {{\"type\": \"{kind}\", \"unit\": \"{unit}\", \"values\": [{values}]}}")
+    };
+    let columns = [
+        column("theta_i", "independent", "deg", list(&|k| row(k).0 as f64)),
+        column("phi_i", "independent", "deg", list(&|_| 0.0)),
+        column("theta_r", "independent", "deg", list(&|k| row(k).1.abs())),
+        column(
+            "phi_r",
+            "independent",
+            "degree",
+            list(&|k| if row(k).1 < 0.0 { 0.0 } else { 180.0 }),
+        ),
+        column("BRDF", "dependent", "sr^-1", list(&|k| row(k).2)),
+    ];
+    let schema =
+        "https://raw.githubusercontent.com/BiRD-project/BiRD_view/master/BRDF_JSON_schema/brdf_json_schema_v1.0.json";
+    format!(
+        "{{\"metadata\": {{\"schema\": \"{schema}\", \"type\": \"BRDF\"}}, \"data\": {{{}}}}}\n",
+        columns.join(",\n")
+    )
+    .into_bytes()
+}
+
 /// Time of this thread on a processor.
 struct ThreadTime;
 
@@ -147,7 +263,7 @@ impl Measurement for ThreadTime {
 type Written = fn(usize) -> Vec<u8>;
 
 /// The formats, with what makes a file of so many numbers.
-const FILES: [(&str, Written); 10] = [
+const FILES: [(&str, Written); 17] = [
     ("CSV", |rows| table(rows, ",", "\n")),
     ("CSV, CR LF", |rows| table(rows, ",", "\r\n")),
     ("CSV, CR", |rows| table(rows, ",", "\r")),
@@ -158,6 +274,13 @@ const FILES: [(&str, Written); 10] = [
     ("ASTM", astm),
     ("OpenMATERIAL", openmaterial),
     ("Zemax", zemax),
+    ("BiRD", bird),
+    ("FRED", fred),
+    ("LUMOS", lumos),
+    ("pab-opto", pabopto),
+    ("SSDD", ssdd),
+    ("LightTools", lighttools),
+    ("Speos", speos),
 ];
 
 fn read(name: &str, bytes: &[u8]) {
@@ -187,21 +310,31 @@ fn print_table() {
     println!("# Reading\n");
     println!("Files in memory, read on one thread to samples; the least thread time of {TIMES} readings.");
     println!("Regenerate: `cargo bench --bench reading -- --table > benches/results/reading.md`.\n");
-    println!("| format | MB | MB/s | MB | MB/s |");
-    println!("|---|--:|--:|--:|--:|");
+    println!("The last column is the time a byte at the larger size over that at the smaller: 1 is linear.");
+    println!(
+        "MERL and RGL files have one size, and of workbooks each sheet is read as the table that it would be as CSV.\n"
+    );
+    println!("| format | MB | MB/s | MB | MB/s | time a byte |");
+    println!("|---|--:|--:|--:|--:|--:|");
     for (name, file) in FILES {
-        let cells = [ROWS, 4 * ROWS].map(|rows| {
+        let [small, large] = [ROWS, 4 * ROWS].map(|rows| {
             let bytes = file(rows);
             let times = (0..TIMES).map(|_| {
                 let begun = ThreadTime::now();
                 read(name, &bytes);
                 ThreadTime::now() - begun
             });
-            let least = times.min().unwrap_or_default();
             let size = bytes.len() as f64 / 1e6;
-            format!("{size:.2} | {:.0}", size / least.as_secs_f64())
+            (size, size / times.min().unwrap_or_default().as_secs_f64())
         });
-        println!("| {name} | {} |", cells.join(" | "));
+        println!(
+            "| {name} | {:.2} | {:.0} | {:.2} | {:.0} | {:.2} |",
+            small.0,
+            small.1,
+            large.0,
+            large.1,
+            small.1 / large.1
+        );
     }
 }
 

@@ -137,10 +137,7 @@ fn passes_over_a_large_scan_have_the_same_bits_on_any_number_of_threads() {
             scene.linearize(&start.x),
             level.map(f64::to_bits),
             cost.to_bits(),
-            scene
-                .candidate(&bounds, 1, 7, Region::Band(1))
-                .x
-                .map(f64::to_bits),
+            scene.candidate(&bounds, 1, 7, Region::Band(1)).x.map(f64::to_bits),
         )
     };
     let alone = passes(&whole);

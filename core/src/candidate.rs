@@ -56,6 +56,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
         Self::levelled(bounds, x, self.summed(|part| part.inlined_totals(x), add))
     }
 
+    #[cfg_attr(target_os = "none", inline(never))]
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
         let roles = const { propose::roles(&M::PARAMETERS) };
         (0..P).any(|k| roles[k] == Role::Slope && (x[k] > y[k] * factor || y[k] > x[k] * factor))

@@ -96,6 +96,7 @@ pub struct Bounds<R, const P: usize> {
 
 impl<R: Real, const P: usize> Bounds<R, P> {
     /// The nearest point within; NaN becomes the lower bound.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn clamp(&self, x: [R; P]) -> [R; P] {
         let mut inside = x;
         for i in 0..P {

@@ -166,11 +166,13 @@ pub(crate) fn sift<R: Real, const P: usize>(list: &mut [Minimum<R, P>]) {
 }
 
 /// Order of costs, in which NaN comes last.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn less<R: Real>(a: R, b: R) -> bool {
     a < b || (a.is_finite() && !b.is_finite())
 }
 
 /// Do two numbers of one sign differ by at most this part of the larger?
+#[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn close<R: Real>(x: R, y: R, part: R) -> bool {
     (x - y).abs() <= part * x.abs().max(y.abs())
 }

@@ -10,10 +10,17 @@ use crate::real::Real;
 fn generator(seed: u64, i: u64) -> Xoshiro256PlusPlus {
     let mut z = seed ^ mix(i.wrapping_add(1));
     z = mix(z);
-    Xoshiro256PlusPlus::seed_from_u64(z)
+    // What `seed_from_u64` does, in less code.
+    let mut state = [0; 32];
+    for word in state.as_chunks_mut::<8>().0 {
+        z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        *word = mix(z).to_le_bytes();
+    }
+    Xoshiro256PlusPlus::from_seed(state)
 }
 
 /// The finaliser of SplitMix64: a bijection in which each input bit changes half of the output bits.
+#[cfg_attr(target_os = "none", inline(never))]
 fn mix(x: u64) -> u64 {
     let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -52,4 +59,17 @@ pub fn even<R: Real>(seed: u64, i: u64) -> [R; 3] {
     const STEPS: [u64; 3] = [0xd1b5_4a32_d192_ed03, 0xabc9_8388_fb8f_ac03, 0x8cb9_2ba7_2f3d_8dd7];
     let mut random = generator(seed, u64::MAX);
     STEPS.map(|step| R::unit(random.next_u64().wrapping_add(step.wrapping_mul(i))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_state_is_that_of_seed_from_u64() {
+        for (seed, i) in [(0, 0), (1, 0), (0, u64::MAX), (u64::MAX, 7), (12345, 678_910)] {
+            let expected = Xoshiro256PlusPlus::seed_from_u64(mix(seed ^ mix(i.wrapping_add(1))));
+            assert_eq!(generator(seed, i), expected, "{seed} {i}");
+        }
+    }
 }

@@ -76,6 +76,7 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
     }
 
     /// Is there no noise in the scan?
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn is_exact(&self) -> bool {
         let best = self.list.first();
         best.is_some_and(|best| best.cost < self.poorest * R::of(EXACT))

@@ -9,6 +9,7 @@ use crate::search::{Candidate, Region, Scene, Waits};
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
     /// Begins one of these candidates.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn begin_round(&mut self, first: u32, end: u32, kind: Kind) {
         self.round += 1;
         (self.next, self.end, self.kind) = (first, end, kind);

@@ -171,6 +171,18 @@ pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Res
 ///
 /// # Errors
 /// As [`read`].
+///
+/// ```
+/// use brdfit::input::{ReadOptions, parse};
+///
+/// let table = b"theta_i_deg,theta_s_deg,brdf_per_sr\n30,-20,0.13\n30,30,2.7\n30,90,0.1\n";
+/// let refused = parse("paint.csv", table, &ReadOptions::default()).err().map(|error| error.to_string());
+/// assert!(refused.is_some_and(|line| line.starts_with("paint.csv:")));
+/// let options = ReadOptions { drop_invalid: true, ..ReadOptions::default() };
+/// let scans = parse("paint.csv", table, &options)?;
+/// assert_eq!((scans.len(), scans[0].samples.len()), (1, 2));
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
     let scans = raw_scans(file, bytes, options).map_err(|error| error.in_file(file))?;
     measured(file, scans, options)

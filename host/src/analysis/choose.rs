@@ -268,6 +268,19 @@ fn fit_each(
 ///
 /// # Errors
 /// [`FitError`]; that of the candidate with the fewest parameters if samples suffice for none.
+///
+/// ```
+/// use brdfit::analysis::choose::choose;
+/// use brdfit::engine::{FitOptions, Model};
+/// use brdfit::input::{ReadOptions, parse};
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let models = ["beckmann", "ggx"].into_iter().filter_map(Model::find);
+/// let choice = choose(&scan.samples, &models.map(FitOptions::of).collect::<Vec<_>>())?;
+/// assert_eq!(choice.chosen().options.model.name, "beckmann");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, FitError> {
     let plain = |options: &FitOptions| FitOptions {
         robust: false,

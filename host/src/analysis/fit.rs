@@ -183,6 +183,21 @@ pub fn known(samples: &[Sample<f64>], options: &FitOptions, outcome: Outcome) ->
 ///
 /// # Errors
 /// The scan has too few samples, or no start gives a finite model.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::analysis::fit::fit;
+/// use brdfit::engine::FitOptions;
+/// use brdfit::input::{ReadOptions, parse};
+/// use brdfit::result;
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
+/// assert!(fitted.outcome.rms_ln < 0.07);
+/// print!("{}", result::text(&[fitted], true));
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
     let begun = Stopwatch::start();
     let found = choose::fit(&measurement.samples, wanted);

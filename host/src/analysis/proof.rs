@@ -151,6 +151,22 @@ fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
 ///
 /// # Errors
 /// The model is not Eq. 14.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::analysis::fit::fit;
+/// use brdfit::analysis::proof::{Goal, prove};
+/// use brdfit::engine::FitOptions;
+/// use brdfit::input::{ReadOptions, parse};
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
+/// let goal = Goal { eps: 0.3, boxes: 100_000, limit: None, interrupted: &|| false, progress: &|_| () };
+/// let proved = prove(scan, fitted, &goal)?;
+/// assert!(proved.proof.is_some_and(|proof| proof.complete && proof.eps == 0.3));
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn prove(measurement: &Measurement, fitted: FittedScan, goal: &Goal) -> Result<FittedScan, Error> {
     let explain = |error| input::explain(measurement, error);
     let mut fitted = fitted;

@@ -47,6 +47,24 @@ pub enum Form {
 ///
 /// # Errors
 /// The form cannot hold the model, or lacks something.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::analysis::fit::fit;
+/// use brdfit::engine::FitOptions;
+/// use brdfit::export::form::{Form, write};
+/// use brdfit::export::model::Model;
+/// use brdfit::input::{ReadOptions, parse};
+/// use brdfit::result;
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
+/// let models = Model::of_json(result::json(&[fitted]).as_bytes(), &[])?;
+/// let (file, deviation) = write(Form::C, &models, None)?;
+/// assert!(String::from_utf8_lossy(&file).contains("#define PAINT_RHO_D ") && deviation.is_none());
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn write(form: Form, models: &[Model], wavelength: Option<f64>) -> Result<(Vec<u8>, Option<String>), Error> {
     let one = || match models {
         [model] => Ok(model),

@@ -26,6 +26,20 @@ const MINIMA: usize = 12;
 const ANGLES: usize = 24;
 
 /// One file that needs no other; `command` is the line that made it.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::engine::FitOptions;
+/// use brdfit::input::{ReadOptions, parse};
+/// use brdfit::page::html::page;
+/// use brdfit::page::section::Section;
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let section = Section::new(scan, &Wanted::One(FitOptions::default()), None)?;
+/// assert!(page(&[section], "brdfit report paint.csv").starts_with("<!DOCTYPE html>"));
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn page(sections: &[Section], command: &str) -> String {
     let title = match sections {
         [one] => format!("BRDF fit of {}", one.label),

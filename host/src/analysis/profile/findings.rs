@@ -47,6 +47,21 @@ pub struct Findings {
 ///
 /// # Errors
 /// The scan cannot be fitted, or a name is not that of a free parameter.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::analysis::profile::findings::{Asked, find};
+/// use brdfit::engine::FitOptions;
+/// use brdfit::input::{ReadOptions, parse};
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let asked = Asked { parameters: &["rho_d".into()], ..Asked::default() };
+/// let found = find(scan, &Wanted::One(FitOptions::default()), &asked)?;
+/// let [_, at_95_percent] = found.profiles[0].intervals;
+/// assert!(at_95_percent.low.value < at_95_percent.high.value);
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
 pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result<Findings, Error> {
     let measurement = &deviations::settled(measurement.clone(), wanted);
     let samples = &measurement.samples;

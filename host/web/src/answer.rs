@@ -217,6 +217,7 @@ fn certified(fitted: Fitted, within: f64, seconds: f64, told: Told) -> Result<Va
         eps: within,
         boxes: u64::MAX,
         limit: Duration::try_from_secs_f64(seconds).ok(),
+        alone: true,
         interrupted: &|| false,
         progress: told,
     };

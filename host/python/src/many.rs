@@ -178,10 +178,7 @@ impl Work<'_> {
         let samples = &measurement.samples;
         let found = choose::fit(samples, &wanted).map(|(options, outcome, choice)| {
             let kept = robust::kept(samples, &outcome);
-            let mut outcome = known(&kept, &options, outcome);
-            if let Some(sigma) = measurement.sigma_ln {
-                outcome.uncertainty = deviations::judged(&outcome.uncertainty, sigma).0;
-            }
+            let (outcome, _) = known(&measurement, &kept, &options, outcome);
             (options, outcome, choice)
         });
         let kept = match found {

@@ -85,18 +85,7 @@ impl FittedScan {
     /// Lobes that no sample sees are left out, and the uncertainty accounts for the correlation of the residuals.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
-        let mut outcome = unseen::settled(&samples, options, outcome);
-        let corrected = misfit::uncertainty(&samples, &outcome);
-        let mut verdict = None;
-        outcome.uncertainty = match measurement.sigma_ln {
-            None => corrected,
-            Some(sigma) => {
-                let absolute = measurement.on_deviations.absolute;
-                let judged = deviations::judged(&corrected, &outcome.uncertainty, sigma, absolute);
-                verdict = judged.1;
-                judged.0
-            }
-        };
+        let (outcome, verdict) = known(measurement, &samples, options, outcome);
         let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),
@@ -172,11 +161,26 @@ impl FittedScan {
     }
 }
 
-/// What the engine found of these samples, without lobes that none of them sees, and with errors that account for the correlation of the residuals.
-pub fn known(samples: &[Sample<f64>], options: &FitOptions, outcome: Outcome) -> Outcome {
+/// What the engine found of the samples of a measurement, less outliers: without lobes that none of them sees, and with errors that account for the correlation of the residuals, or are those of the file's standard deviations; what became of these.
+pub fn known(
+    measurement: &Measurement,
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: Outcome,
+) -> (Outcome, Option<Verdict>) {
     let mut outcome = unseen::settled(samples, options, outcome);
-    outcome.uncertainty = misfit::uncertainty(samples, &outcome);
-    outcome
+    let corrected = misfit::uncertainty(samples, &outcome);
+    let mut verdict = None;
+    outcome.uncertainty = match measurement.sigma_ln {
+        None => corrected,
+        Some(sigma) => {
+            let absolute = measurement.on_deviations.absolute;
+            let judged = deviations::judged(&corrected, &outcome.uncertainty, sigma, absolute);
+            verdict = judged.1;
+            judged.0
+        }
+    };
+    (outcome, verdict)
 }
 
 /// Fits one scan with what is wanted.

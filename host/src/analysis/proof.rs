@@ -162,7 +162,7 @@ fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
 /// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
 /// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
 /// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
-/// let goal = Goal { eps: 0.3, boxes: 100_000, limit: None, interrupted: &|| false, progress: &|_| () };
+/// let goal = Goal { eps: 0.3, boxes: 100_000, limit: None, alone: false, interrupted: &|| false, progress: &|_| () };
 /// let proved = prove(scan, fitted, &goal)?;
 /// assert!(proved.proof.is_some_and(|proof| proof.complete && proof.eps == 0.3));
 /// # Ok::<(), brdfit::error::Error>(())

@@ -9,6 +9,7 @@ use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
 use brdfit_core::real::Real;
 use brdfit_core::residuals::{Residuals, ln_f, observe};
 use brdfit_core::search::{CANDIDATES, search};
+use brdfit_suite::corners::corners;
 use brdfit_suite::tolerance::{self, check};
 use dashu_float::{FBig, round::mode::HalfEven};
 
@@ -255,33 +256,16 @@ fn limits() {
     assert_eq!(two, KCorrelation::gradient(&[0.1, 2.0, 1e3, 1.5], &at(0.25)).0);
 }
 
-/// Every corner of the domain has a finite ln f with finite derivatives, in both number types.
-fn corners<R: Real, F: Formula<P>, const P: usize>() {
-    for corner in 0..1u32 << P {
-        let x = std::array::from_fn(|k| {
-            let (least, most) = F::PARAMETERS[k].domain;
-            R::of(if corner >> k & 1 == 0 { least } else { most })
-        });
-        for angles in directions() {
-            let [theta_i, theta_s, delta_phi] = angles.map(R::of);
-            let at = <Own<F> as Model<R, P, 8>>::geometry(theta_i, theta_s, delta_phi.min(R::PI));
-            let (value, gradient) = ln_f::<R, Own<F>, P, 8>(&x, at.expect("above the horizon"));
-            let finite = value.is_finite() && gradient.iter().all(|slope| slope.is_finite());
-            assert!(finite, "{x:?} {angles:?}: {value:?} {gradient:?}");
-        }
-    }
-}
-
 #[test]
 fn no_corner_of_the_domain_overflows() {
-    corners::<f64, Abg, 4>();
-    corners::<f32, Abg, 4>();
-    corners::<f64, HarveyShack, 4>();
-    corners::<f32, HarveyShack, 4>();
-    corners::<f64, KCorrelation, 4>();
-    corners::<f32, KCorrelation, 4>();
-    corners::<f64, KCorrelation2, 7>();
-    corners::<f32, KCorrelation2, 7>();
+    corners::<f64, Abg, 4>(&directions());
+    corners::<f32, Abg, 4>(&directions());
+    corners::<f64, HarveyShack, 4>(&directions());
+    corners::<f32, HarveyShack, 4>(&directions());
+    corners::<f64, KCorrelation, 4>(&directions());
+    corners::<f32, KCorrelation, 4>(&directions());
+    corners::<f64, KCorrelation2, 7>(&directions());
+    corners::<f32, KCorrelation2, 7>(&directions());
 }
 
 /// Parameters of scene `k`, evenly in the logarithm over what surfaces have.

@@ -77,6 +77,14 @@ impl Error {
         }
     }
 
+    /// As it prints, without the word `error` where no file is at fault: for callers that say so themselves, as an exception does.
+    pub fn in_exception(&self) -> String {
+        match self.file {
+            Some(_) => self.to_string(),
+            None => self.message(),
+        }
+    }
+
     /// What is wrong and what to do about it, without the place.
     pub fn message(&self) -> String {
         // What is wrong may be told in words of a file, such as the name of a column.
@@ -122,6 +130,8 @@ mod tests {
             "scan.csv:12:3: the BRDF is -0.1, which has no logarithm; use --drop-invalid to leave such rows out"
         );
         assert_eq!(Error::new("no").to_string(), "error: no");
+        assert_eq!(Error::new("no").in_exception(), "no");
+        assert_eq!(error.in_exception(), error.to_string());
         assert_eq!(Error::new("no").in_color(), "\x1b[1;31merror\x1b[0m: no");
         assert_eq!(shown(" a\nb "), "a\\nb");
         let hostile = Error::new("a\u{1b}[2Jb").in_file("c\n\u{202e}d").help("e\rf");

@@ -5,6 +5,7 @@
 )]
 
 pub mod claims;
+pub mod corners;
 pub mod double_double;
 pub mod dual;
 pub mod hard_scenes;

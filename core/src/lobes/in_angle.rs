@@ -4,7 +4,7 @@ use crate::real::Real;
 
 /// The masking `M` of facets whose distribution is one of tilts, not of slopes: `D = g(theta_h^2 / m^2) / (pi m^2)`, with m in radians.
 ///
-/// With [`super::Beckmann`]'s g that is the Gaussian of Torrance and Sparrow 1967.
+/// With [`super::Beckmann`]'s g that is the Gaussian `exp(-(c alpha)^2)` of Torrance and Sparrow 1967, as Blinn 1977 gives it, with c = 1/m.
 #[derive(Clone, Copy, Debug)]
 pub struct InAngle<M>(core::marker::PhantomData<M>);
 

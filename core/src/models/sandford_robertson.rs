@@ -3,7 +3,9 @@ use crate::formula::{Directions, Formula};
 use crate::model::{Parameter, Role};
 use crate::real::Real;
 
-/// Sandford and Robertson, "Infrared reflectance properties of aircraft paints", Proc. IRIS Targets, Backgrounds and Discrimination, 1985: what a paint does not emit goes into a Lambert-like and an elliptical lobe, whose reflectances are exact.
+/// After Sandford and Robertson, "Infrared reflectance properties of aircraft paints", Proc. IRIS Targets, Backgrounds and Discrimination, 1985: what a paint does not emit goes into a Lambert-like and an elliptical lobe, whose reflectances are exact.
+///
+/// Their paper is not public, and this form was not compared with it: what is tested is that the lobes and the emission together are all of the light (`tests/paints.rs`), which fixes G and H once g and h are given.
 ///
 /// With `g(theta) = 1 / (1 + b^2 tan^2 theta)` and its mean over the hemisphere `G = (1 + b^2 / (1 - b^2) ln b^2) / (1 - b^2)`,
 /// `f = rho_d g(theta_i) g(theta_s) / (pi G^2) + R(theta_i) h(theta_h) / (4 pi H(theta_i) cos theta_s)`, where

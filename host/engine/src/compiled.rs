@@ -117,6 +117,27 @@ fn scene<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, cons
     FastScan::new(Residuals::new(blocks), simd)
 }
 
+/// What `then` does with the samples as a scene.
+fn with<R: Real, M: Model<R, P, C> + Send + Sync, T, const P: usize, const C: usize, const VECTORS: u8>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    then: impl FnOnce(&Kernel<R, P>) -> Result<T, FitError>,
+) -> Result<T, FitError> {
+    let blocks = blocks_of::<R, M, P, C>(samples)?;
+    then(&scene::<R, M, P, C, VECTORS>(&blocks, options.simd))
+}
+
+/// The same through the aperture.
+fn with_aperture<M: Both<P, C>, T, const P: usize, const C: usize, const VECTORS: u8>(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    then: impl FnOnce(&Kernel<f64, P>) -> Result<T, FitError>,
+) -> Result<T, FitError> {
+    with::<f64, M, T, P, C, VECTORS>(samples, options, |point| {
+        then(&Averaged::<M, P, C>::new(point, samples, options.instrument.aperture)?)
+    })
+}
+
 fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     samples: &[Sample<f64>],
     options: &FitOptions,
@@ -125,16 +146,12 @@ fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
 ) -> Result<Outcome, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let exact = blocks_of::<f64, M, P, C>(samples)?;
-    let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
-    match options.precision {
-        Precision::F64 => search::run::<f64, P>(&exact, &exact, own, samples, options, setup, known),
-        Precision::F32 => {
-            let blocks = blocks_of::<f32, M, P, C>(samples)?;
-            let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
-            search::run::<f32, P>(&scene, &exact, own, samples, options, setup, known)
-        }
-    }
+    with::<f64, M, _, P, C, VECTORS>(samples, options, |exact| match options.precision {
+        Precision::F64 => search::run(exact, exact, own, samples, options, setup, known),
+        Precision::F32 => with::<f32, M, _, P, C, VECTORS>(samples, options, |scene| {
+            search::run(scene, exact, own, samples, options, setup, known)
+        }),
+    })
 }
 
 fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -143,10 +160,10 @@ fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
     setup: &Setup,
     starts: &[Values],
 ) -> Result<Found, FitError> {
-    let blocks = blocks_of::<f64, M, P, C>(samples)?;
-    let scene = scene::<f64, M, P, C, VECTORS>(&blocks, options.simd);
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    search::descend_from::<P>(&scene, own, samples, options, setup, starts)
+    with::<f64, M, _, P, C, VECTORS>(samples, options, |scene| {
+        search::descend_from(scene, own, samples, options, setup, starts)
+    })
 }
 
 fn through<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -157,10 +174,9 @@ fn through<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
 ) -> Result<Outcome, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let point = blocks_of::<f64, M, P, C>(samples)?;
-    let point = scene::<f64, M, P, C, VECTORS>(&point, options.simd);
-    let seen = Averaged::<M, P, C>::new(&point, samples, options.instrument.aperture)?;
-    search::run::<f64, P>(&seen, &seen, own, samples, options, setup, known)
+    with_aperture::<M, _, P, C, VECTORS>(samples, options, |seen| {
+        search::run(seen, seen, own, samples, options, setup, known)
+    })
 }
 
 fn through_from<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -170,10 +186,9 @@ fn through_from<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8
     starts: &[Values],
 ) -> Result<Found, FitError> {
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let point = blocks_of::<f64, M, P, C>(samples)?;
-    let point = scene::<f64, M, P, C, VECTORS>(&point, options.simd);
-    let seen = Averaged::<M, P, C>::new(&point, samples, options.instrument.aperture)?;
-    search::descend_from::<P>(&seen, own, samples, options, setup, starts)
+    with_aperture::<M, _, P, C, VECTORS>(samples, options, |seen| {
+        search::descend_from(seen, own, samples, options, setup, starts)
+    })
 }
 
 fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
@@ -182,16 +197,12 @@ fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
 ) -> Result<Trace, FitError> {
     search::enough(samples, options)?;
     let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    let exact = blocks_of::<f64, M, P, C>(samples)?;
-    let exact = scene::<f64, M, P, C, VECTORS>(&exact, options.simd);
-    match options.precision {
-        Precision::F64 => Ok(trace::watch::<f64, P>(&exact, &exact, own, options)),
+    with::<f64, M, _, P, C, VECTORS>(samples, options, |exact| match options.precision {
+        Precision::F64 => Ok(trace::watch(exact, exact, own, options)),
         Precision::F32 => {
-            let blocks = blocks_of::<f32, M, P, C>(samples)?;
-            let scene = scene::<f32, M, P, C, VECTORS>(&blocks, options.simd);
-            Ok(trace::watch::<f32, P>(&scene, &exact, own, options))
+            with::<f32, M, _, P, C, VECTORS>(samples, options, |scene| Ok(trace::watch(scene, exact, own, options)))
         }
-    }
+    })
 }
 
 fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(

@@ -71,7 +71,7 @@ pub static MODELS: [Model; 20] = [
     microfacet::<{ D | S | A }, Beckmann, InAngle<VGroove>, 5, 6>(
         "torrance-sparrow",
         "Torrance and Sparrow's: a Gaussian of the facets' tilt in radians, V-groove masking, no volume lobe",
-        "Torrance and Sparrow 1967",
+        "Torrance and Sparrow 1967; Blinn 1977",
     ),
     microfacet::<{ D | S }, Ggx, Smith, 4, 8>(
         "walter",
@@ -80,8 +80,8 @@ pub static MODELS: [Model; 20] = [
     ),
     Model::own::<Own<SandfordRobertson>, 4, 8>(
         "sandford-robertson",
-        "Sandford and Robertson's for paints: energy that is not emitted goes into a diffuse and an elliptical lobe",
-        "Sandford and Robertson 1985",
+        "for paints, in the manner of Sandford and Robertson: energy that is not emitted goes into a diffuse and an elliptical lobe",
+        "after Sandford and Robertson 1985; the form was not compared with their paper, its energy is exact",
     ),
     Model::own::<Own<BeardMaxwell>, 7, 8>(
         "beard-maxwell",

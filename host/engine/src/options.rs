@@ -5,7 +5,7 @@ use brdfit_core::search::{CANDIDATES, PAPER_STARTS};
 
 use crate::simd::Simd;
 use crate::until::Until;
-use crate::{Instrument, Model, Outcome, Values};
+use crate::{Instrument, Material, Model, Outcome, Values, View};
 
 /// How the global optimum is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,6 +110,18 @@ impl FitOptions {
             options.instrument.offsets = Some((least.max(near.0), most.min(near.1)));
         }
         options
+    }
+
+    /// The model with these values, as the aperture sees it.
+    pub fn view(&self, values: Values) -> View {
+        View {
+            material: Material {
+                model: self.model,
+                values,
+            },
+            aperture: self.instrument.aperture,
+            offset: 0.0,
+        }
     }
 
     /// The number of starts or candidates that will be used.

@@ -10,7 +10,7 @@ mod subset;
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
-use crate::{FitError, FitOptions, Material, Method, Outcome, Values, View, descend, fit_from};
+use crate::{FitError, FitOptions, Method, Outcome, Values, descend, fit_from};
 use scale::Biweight;
 
 /// Residuals beyond this many scales are outliers, of many samples.
@@ -202,14 +202,7 @@ fn follow(samples: &[Sample<f64>], options: &FitOptions, judge: &Biweight, param
 
 /// Model less measurement in ln f, times the weight; 0 where there is no model.
 fn residuals(samples: &[Sample<f64>], options: &FitOptions, params: &Values) -> Vec<f64> {
-    let view = View {
-        material: Material {
-            model: options.model,
-            values: *params,
-        },
-        aperture: options.instrument.aperture,
-        offset: 0.0,
-    };
+    let view = options.view(*params);
     let each = samples.iter().map(|sample| view.residual(sample).unwrap_or(0.0));
     each.collect()
 }

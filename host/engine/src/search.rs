@@ -17,7 +17,7 @@ use crate::options::{FitOptions, Method};
 use crate::outcome::{FitError, Minimum, Outcome};
 use crate::scale::Scale;
 use crate::until::Watched;
-use crate::{Material, Values, View, robust, uncertainty};
+use crate::{Values, robust, uncertainty};
 
 /// Fits one scan; threads of the current rayon pool share the starts of the `paper` method, and change no bit.
 ///
@@ -171,14 +171,7 @@ pub(crate) fn run<R: Real, const P: usize>(
     let x64 = best.x.map(R::f64);
     let (priors, limit) = rows.costs(&x64);
     let cost = best.at.cost.f64() - limit;
-    let view = View {
-        material: Material {
-            model: options.model,
-            values: layout.values(&best.x),
-        },
-        aperture: options.instrument.aperture,
-        offset: 0.0,
-    };
+    let view = options.view(layout.values(&best.x));
     let nuisance = setup.nuisance.then(|| {
         let slopes = layout.slopes(&x64);
         // Derivatives by the coordinates from those by the parameters.

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use brdfit::analysis::deviations::settled;
-use brdfit::analysis::fit::{FittedScan, fit as fit_scan};
-use brdfit::analysis::proof::{Goal, provable, prove};
+use brdfit::analysis::fit::{FittedScan, fit as fit_scan, prove};
+use brdfit::analysis::proof::{Goal, provable};
 use brdfit::engine::{Material, Outcome, Until};
 use brdfit::input::Measurement;
 use brdfit::page::html;
@@ -18,7 +18,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::options::{self, Asked, line};
+use crate::options::{self, Asked};
 use crate::scan::Scan;
 use crate::table;
 use crate::watch::scoped;
@@ -92,7 +92,7 @@ pub fn report(
         let section = |scan: &&Measurement| Section::new(scan, &wanted, goal.as_ref());
         let sections = || scans.iter().map(section).collect();
         let sections: Result<Vec<Section>, _> = asked.on_threads(sections)?;
-        Ok(html::page(&sections.map_err(|error| line(&error))?, told))
+        Ok(html::page(&sections.map_err(|error| error.in_exception())?, told))
     };
     let page: Result<String, String> = scoped(py, all, |_| Ok(()))?;
     page.map_err(PyValueError::new_err)
@@ -138,7 +138,7 @@ fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -
             let fitted = fit_scan(&scan, &wanted);
             (scan, fitted)
         })?;
-        let fitted = fitted.map_err(|error| line(&error))?;
+        let fitted = fitted.map_err(|error| error.in_exception())?;
         let Some(claim) = claim else {
             return Ok(fitted);
         };
@@ -146,7 +146,7 @@ fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -
         let goal = goal(claim, &over);
         asked
             .on_threads(|| prove(&scan, fitted, &goal))?
-            .map_err(|error| line(&error))
+            .map_err(|error| error.in_exception())
     };
     let mut fitted = scoped(py, one, |_| Ok(()))?.map_err(PyValueError::new_err)?;
     // Two runs give the same object.

@@ -59,7 +59,7 @@ impl Asked {
     }
 
     fn pool(&self) -> Result<ThreadPool, String> {
-        self.search.pool().map_err(|error| line(&error))
+        self.search.pool().map_err(|error| error.in_exception())
     }
 }
 
@@ -98,15 +98,9 @@ pub fn names(model: &str) -> PyResult<Vec<(&'static str, &'static str, &'static 
         .collect())
 }
 
-/// One line for `ValueError`.
-pub fn line(error: &Error) -> String {
-    let text = error.to_string();
-    text.strip_prefix("error: ").unwrap_or(&text).to_string()
-}
-
-/// The same, raised.
+/// `ValueError`, one line.
 pub fn refuse(error: &Error) -> PyErr {
-    PyValueError::new_err(line(error))
+    PyValueError::new_err(error.in_exception())
 }
 
 /// What clap says, in one line.

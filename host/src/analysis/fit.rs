@@ -9,10 +9,10 @@ use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
 use super::deviations::{self, Verdict};
 use super::hints::{self, Hint};
-use super::proof::Proof;
+use super::proof::{Goal, Proof, of_outcome};
 use super::{misfit, unseen};
 use crate::engine::clock::Stopwatch;
-use crate::engine::{self, FitError, FitOptions, Outcome, Values, View};
+use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 
@@ -251,4 +251,47 @@ fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {
         }
     };
     groups.map(one).collect()
+}
+
+/// Proves that no parameters within the bounds fit a scan better; better ones that are found take the place of the fit.
+///
+/// # Errors
+/// The model is not Eq. 14.
+///
+/// ```
+/// use brdfit::analysis::choose::Wanted;
+/// use brdfit::analysis::fit::{fit, prove};
+/// use brdfit::analysis::proof::Goal;
+/// use brdfit::engine::FitOptions;
+/// use brdfit::input::{ReadOptions, parse};
+///
+/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
+/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
+/// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
+/// let goal = Goal { eps: 0.3, boxes: 100_000, limit: None, alone: false, interrupted: &|| false, progress: &|_| () };
+/// let proved = prove(scan, fitted, &goal)?;
+/// assert!(proved.proof.is_some_and(|proof| proof.complete && proof.eps == 0.3));
+/// # Ok::<(), brdfit::error::Error>(())
+/// ```
+pub fn prove(measurement: &Measurement, fitted: FittedScan, goal: &Goal) -> Result<FittedScan, Error> {
+    let explain = |error| input::explain(measurement, error);
+    let mut fitted = fitted;
+    let mut proved: Option<Proof> = None;
+    loop {
+        let (options, known) = (fitted.options, fitted.outcome.clone());
+        let before = known.cost;
+        let (outcome, proof) = of_outcome(&measurement.samples, &options, known, goal).map_err(explain)?;
+        let proof = proved.map_or(proof, |earlier| proof.after(&earlier));
+        if outcome.cost < before {
+            let kept = robust::kept(&measurement.samples, &outcome);
+            fitted = fitted.with(measurement, &kept, outcome).map_err(explain)?;
+            // Of other terms nothing is proved yet.
+            if fitted.options.terms != options.terms {
+                proved = Some(proof);
+                continue;
+            }
+        }
+        fitted.proof = Some(proof);
+        return Ok(fitted);
+    }
 }

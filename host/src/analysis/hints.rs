@@ -1,17 +1,17 @@
 //! What a person who knows scatterometers would say of a scan or a fit, each from the data.
 
+mod curve;
 mod offset;
 mod shadow;
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 use serde::Serialize;
 
 use crate::analysis::derived::Derived;
 use crate::engine::scale::Scale;
 use crate::engine::{FitOptions, Outcome, robust};
 use crate::input::units::{Forward, Quantity};
-use crate::input::{Measurement, plane, side};
+use crate::input::{Measurement, side};
 use crate::number::four;
 
 /// A hint.
@@ -160,23 +160,6 @@ fn lobe_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<(usize, f
     let lobe = robust::lobe_left_out(samples, outcome)?;
     let theta_i = samples[*lobe.first()?].theta_i.to_degrees();
     Some((lobe.len(), (theta_i * 1e4).round() / 1e4))
-}
-
-/// The median; NaN of nothing.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-/// Signed theta_s in degrees and ln f of the samples in plane, by that angle.
-fn in_plane(group: &[&Sample<f64>]) -> Vec<(f64, f64)> {
-    let mut points: Vec<(f64, f64)> = group
-        .iter()
-        .filter_map(|sample| Some((plane::signed_theta_s(sample)?, Real::portable_ln(sample.brdf))))
-        .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points
 }
 
 #[cfg(test)]

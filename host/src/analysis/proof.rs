@@ -4,12 +4,10 @@ use std::time::Duration;
 
 use brdfit_core::geometry::Sample;
 
-use super::fit::FittedScan;
 use crate::engine::certify::{self, Certificate, Claim, certify};
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Outcome, Until, Values, robust};
 use crate::error::Error;
-use crate::input::{self, Measurement};
 
 /// What was proved of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +28,7 @@ pub struct Proof {
 
 impl Proof {
     /// The same, with what an earlier proof of other terms took.
-    fn after(self, earlier: &Proof) -> Self {
+    pub(super) fn after(self, earlier: &Proof) -> Self {
         Proof {
             boxes: self.boxes + earlier.boxes,
             better: self.better || earlier.better,
@@ -145,47 +143,4 @@ fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
         return found.eps;
     }
     1.0 - (1.0 - found.eps) * found.cost / cost
-}
-
-/// Proves that no parameters within the bounds fit a scan better; better ones that are found take the place of the fit.
-///
-/// # Errors
-/// The model is not Eq. 14.
-///
-/// ```
-/// use brdfit::analysis::choose::Wanted;
-/// use brdfit::analysis::fit::fit;
-/// use brdfit::analysis::proof::{Goal, prove};
-/// use brdfit::engine::FitOptions;
-/// use brdfit::input::{ReadOptions, parse};
-///
-/// let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata3_sym_seed1.csv"));
-/// let scan = &parse("paint.csv", table, &ReadOptions::default())?[0];
-/// let fitted = fit(scan, &Wanted::One(FitOptions::default()))?;
-/// let goal = Goal { eps: 0.3, boxes: 100_000, limit: None, alone: false, interrupted: &|| false, progress: &|_| () };
-/// let proved = prove(scan, fitted, &goal)?;
-/// assert!(proved.proof.is_some_and(|proof| proof.complete && proof.eps == 0.3));
-/// # Ok::<(), brdfit::error::Error>(())
-/// ```
-pub fn prove(measurement: &Measurement, fitted: FittedScan, goal: &Goal) -> Result<FittedScan, Error> {
-    let explain = |error| input::explain(measurement, error);
-    let mut fitted = fitted;
-    let mut proved: Option<Proof> = None;
-    loop {
-        let (options, known) = (fitted.options, fitted.outcome.clone());
-        let before = known.cost;
-        let (outcome, proof) = of_outcome(&measurement.samples, &options, known, goal).map_err(explain)?;
-        let proof = proved.map_or(proof, |earlier| proof.after(&earlier));
-        if outcome.cost < before {
-            let kept = robust::kept(&measurement.samples, &outcome);
-            fitted = fitted.with(measurement, &kept, outcome).map_err(explain)?;
-            // Of other terms nothing is proved yet.
-            if fitted.options.terms != options.terms {
-                proved = Some(proof);
-                continue;
-            }
-        }
-        fitted.proof = Some(proof);
-        return Ok(fitted);
-    }
 }

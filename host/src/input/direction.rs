@@ -52,6 +52,15 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
+/// Unit vectors of incidence, at azimuth 0, and of scattering; degrees, in plane without an azimuth.
+#[cfg(test)]
+pub fn vectors(theta_i: f64, theta_s: f64, delta_phi: Option<f64>) -> [[f64; 3]; 2] {
+    [(theta_i, 0.0), (theta_s, delta_phi.unwrap_or(180.0))].map(|direction| {
+        let [(sin, cos), (sin_phi, cos_phi)] = <[f64; 2]>::from(direction).map(sin_cos);
+        [sin * cos_phi, sin * sin_phi, cos]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -31,6 +31,13 @@ pub enum Reader {
         /// The scans as they stand in the file.
         read: fn(&[u8], &ReadOptions) -> Result<Vec<RawScan>, Error>,
     },
+    /// As several texts, each of which is read as a file of its own.
+    Sheets {
+        /// True if they begin as files of this format do.
+        is: fn(&[u8]) -> bool,
+        /// The texts.
+        texts: fn(&[u8]) -> Result<Vec<NamedText>, Error>,
+    },
     /// From text, whatever its encoding was.
     Text {
         /// True if the text is of this format.
@@ -38,6 +45,15 @@ pub enum Reader {
         /// The scans as they stand in the file.
         read: fn(&str, &ReadOptions) -> Result<Vec<RawScan>, Error>,
     },
+}
+
+/// One of several texts in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedText {
+    /// What tells it from the others, such as the name of a sheet.
+    pub name: String,
+    /// Its text.
+    pub text: String,
 }
 
 /// That of samples which no file holds.

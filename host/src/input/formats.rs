@@ -21,7 +21,7 @@ pub(crate) mod tensor;
 pub(crate) mod warp;
 mod words;
 
-use super::format::{Format, Reader};
+use super::format::{Format, NamedText, Reader};
 use super::options::ReadOptions;
 use super::raw::RawScan;
 use super::{bytes, table};
@@ -79,14 +79,36 @@ pub fn scans(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>
 fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
     let asked = named(options.input_format.as_deref())?;
     for format in ALL {
-        if let Reader::Bytes { is, read } = format.reader
-            && (asked == Some(format) || asked.is_none() && is(file))
-        {
-            return Ok((format, read(file, options)?));
+        let is_it = |is: fn(&[u8]) -> bool| asked == Some(format) || asked.is_none() && is(file);
+        match format.reader {
+            Reader::Bytes { is, read } if is_it(is) => return Ok((format, read(file, options)?)),
+            Reader::Sheets { is, texts } if is_it(is) => return Ok((format, of_sheets(texts(file)?, options)?)),
+            _ => {}
         }
     }
     let text = bytes::text(file).map_err(|error| foreign::named(file).unwrap_or(error))?;
     of_text(&text, asked, options)
+}
+
+/// The scans of each sheet, whose name tells them apart if there are several.
+fn of_sheets(sheets: Vec<NamedText>, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+    let several = sheets.len() > 1;
+    let mut scans = Vec::new();
+    for NamedText { name, text } in sheets {
+        let (_, found) = of_text(&text, None, options).map_err(|error| {
+            let what = if several {
+                format!("sheet {}: {}", shown(&name), error.what)
+            } else {
+                error.what
+            };
+            Error { what, ..error }
+        })?;
+        scans.extend(found.into_iter().map(|mut scan| {
+            scan.names.splice(0..0, several.then(|| name.clone()));
+            scan
+        }));
+    }
+    Ok(scans)
 }
 
 /// The scans in a text, of the format that is asked for or that it looks like.

@@ -2,8 +2,8 @@
 
 use crate::analysis::choose::Wanted;
 use crate::analysis::derived::{self, Derived};
-use crate::analysis::fit::{FittedScan, fit};
-use crate::analysis::proof::{Goal, prove};
+use crate::analysis::fit::{FittedScan, fit, prove};
+use crate::analysis::proof::Goal;
 use crate::engine::robust;
 use crate::engine::{self, FitOptions, Material, Method, Minimum, Outcome, Values, View};
 use crate::error::Error;

@@ -238,14 +238,7 @@ fn descend_at(
 ) -> Result<Option<(f64, Values)>, FitError> {
     let mut setup = Setup::default();
     let cost = |values: &Values| {
-        let view = View {
-            material: Material {
-                model: options.model,
-                values: *values,
-            },
-            aperture: options.instrument.aperture,
-            offset: 0.0,
-        };
+        let view = options.view(*values);
         samples
             .iter()
             .filter_map(|sample| view.residual(sample))

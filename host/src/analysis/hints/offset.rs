@@ -3,7 +3,7 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-use super::in_plane;
+use super::curve::{in_plane, median};
 use crate::engine::{self, FitOptions, Outcome};
 use crate::input::{Measurement, plane};
 
@@ -41,7 +41,7 @@ pub fn of_peaks(samples: &[Sample<f64>]) -> Option<f64> {
 /// Around its top ln f of a lobe is a parabola, which the cosine of theta_s in front of it (Eq. 14) moves towards grazing by sigma^2 tan(theta_s), sigma being its width; this is taken off.
 fn peak(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let top = (0..points.len()).max_by(|&a, &b| points[a].1.total_cmp(&points[b].1))?;
-    let level = super::median(points.iter().map(|point| point.1));
+    let level = median(points.iter().map(|point| point.1));
     if top == 0 || top + 1 == points.len() || points[top].1 - level < STANDS_OUT {
         return None;
     }

@@ -2,7 +2,7 @@
 
 use brdfit_core::geometry::Sample;
 
-use super::{in_plane, median};
+use super::curve::{in_plane, median};
 use crate::input::plane;
 
 /// The shadow is looked for this close to the direction of incidence, degrees.

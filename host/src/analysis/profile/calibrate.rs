@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::hold::hold;
 use crate::analysis::bootstrap::{Noise, copy, quantile, redrawn};
 use crate::analysis::chance::within_t;
-use crate::engine::{self, FitError, FitOptions, Material, Values, View};
+use crate::engine::{self, FitError, FitOptions, Values};
 
 /// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
 pub const LEVELS: [f64; 2] = [0.682_689_492_137_085_9, 0.95];
@@ -32,14 +32,7 @@ pub fn thresholds(
     scale: f64,
     count: u32,
 ) -> Result<[f64; 2], FitError> {
-    let view = View {
-        material: Material {
-            model: options.model,
-            values: *params,
-        },
-        aperture: options.instrument.aperture,
-        offset: 0.0,
-    };
+    let view = options.view(*params);
     let one = |k: u32| {
         let mut noise = Noise::new(options.seed, u64::from(k));
         let copy = copy(samples, view, scale, &mut noise);

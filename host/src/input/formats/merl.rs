@@ -128,7 +128,7 @@ mod tests {
     use libm::{atan2, sqrt};
 
     use super::*;
-    use crate::input::direction::sin_cos;
+    use crate::input::direction::vectors;
 
     /// A file whose value in each bin is `value` of theta_h, theta_d and phi_d, the middles in degrees; G has twice and B three times as much as R.
     fn file(value: impl Fn(f64, f64, f64) -> f64) -> Vec<u8> {
@@ -145,14 +145,7 @@ mod tests {
 
     /// theta_h, theta_d and phi_d in degrees of two directions, by vectors (Rusinkiewicz 1998).
     fn half_angles(row: &Row) -> [f64; 3] {
-        let vector = |theta: f64, phi: f64| {
-            let [(sin, cos), (sin_phi, cos_phi)] = [theta, phi].map(sin_cos);
-            [sin * cos_phi, sin * sin_phi, cos]
-        };
-        let (i, s) = (
-            vector(row.theta_i, 0.0),
-            vector(row.theta_s, row.delta_phi.unwrap_or(180.0)),
-        );
+        let [i, s] = vectors(row.theta_i, row.theta_s, row.delta_phi);
         let sum: [f64; 3] = std::array::from_fn(|k| i[k] + s[k]);
         let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let length = sqrt(dot(sum, sum));

@@ -235,6 +235,7 @@ fn u_of_phi(phi: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::direction::vectors;
     use crate::input::formats::tensor::Numbers;
 
     const NODES: [usize; 2] = [5, 4];
@@ -304,14 +305,7 @@ mod tests {
 
     /// f cos(theta_s) of the colour that begins with `first` at any direction, by the inverse map (the reader of the database).
     fn expected(row: &Row, phi_i: f64, isotropic: bool, first: f64) -> f64 {
-        let vector = |theta: f64, phi: f64| {
-            let [(sin, cos), (sin_phi, cos_phi)] = [theta, phi].map(sin_cos);
-            [sin * cos_phi, sin * sin_phi, cos]
-        };
-        let (i, s) = (
-            vector(row.theta_i, 0.0),
-            vector(row.theta_s, row.delta_phi.unwrap_or(180.0)),
-        );
+        let [i, s] = vectors(row.theta_i, row.theta_s, row.delta_phi);
         let half: [f64; 3] = std::array::from_fn(|k| i[k] + s[k]);
         let across = libm::hypot(half[0], half[1]);
         let turn = if isotropic { 0.0 } else { phi_i };

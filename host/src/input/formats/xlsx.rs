@@ -3,16 +3,14 @@
 //! Only with the feature `xlsx`; without it they are refused by name.
 
 use crate::error::Error;
-use crate::input::format::{Format, Reader};
-use crate::input::options::ReadOptions;
-use crate::input::raw::RawScan;
+use crate::input::format::{Format, NamedText, Reader};
 
 /// This format.
 pub const FORMAT: Format = Format {
     name: "xlsx",
     title: "Excel workbook",
     about: "Excel workbook, .xlsx (with the feature xlsx)",
-    reader: Reader::Bytes { is, read },
+    reader: Reader::Sheets { is, texts },
 };
 
 /// True of a ZIP archive with the parts of a workbook.
@@ -21,14 +19,14 @@ fn is(file: &[u8]) -> bool {
 }
 
 #[cfg(not(feature = "xlsx"))]
-fn read(_: &[u8], _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+fn texts(_: &[u8]) -> Result<Vec<NamedText>, Error> {
     Err(Error::new("this is an Excel workbook, which this build does not read")
         .help("save the sheet as CSV, or build with --features xlsx"))
 }
 
-/// The scans of each sheet that has any number; the name of the sheet tells them apart if there are several.
+/// The name and the text of each sheet that has any number.
 #[cfg(feature = "xlsx")]
-fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+fn texts(file: &[u8]) -> Result<Vec<NamedText>, Error> {
     use calamine::{Reader as _, Xlsx};
 
     let fault = |what: String| Error::new(format!("as Excel workbook: {what}")).help("save the sheet as CSV");
@@ -39,29 +37,13 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             .worksheet_range(&name)
             .map_err(|error| fault(error.to_string()))?;
         if let Some(text) = text(&range) {
-            sheets.push((name, text));
+            sheets.push(NamedText { name, text });
         }
     }
-    let several = sheets.len() > 1;
-    let mut scans = Vec::new();
-    for (name, text) in sheets {
-        let (_, found) = super::of_text(&text, None, options).map_err(|error| {
-            let what = if several {
-                format!("sheet {}: {}", crate::error::shown(&name), error.what)
-            } else {
-                error.what
-            };
-            Error { what, ..error }
-        })?;
-        scans.extend(found.into_iter().map(|mut scan| {
-            scan.names.splice(0..0, several.then(|| name.clone()));
-            scan
-        }));
-    }
-    if scans.is_empty() {
+    if sheets.is_empty() {
         return Err(fault("there is no sheet with numbers".into()));
     }
-    Ok(scans)
+    Ok(sheets)
 }
 
 /// The cells of a sheet with tabs between them, each row on its line of the sheet; none if no cell is a number.
@@ -95,6 +77,9 @@ fn text(range: &calamine::Range<calamine::Data>) -> Option<String> {
 #[cfg(all(test, feature = "xlsx"))]
 mod tests {
     use super::*;
+    use crate::input::ReadOptions;
+    use crate::input::formats::scans;
+    use crate::input::raw::RawScan;
 
     fn data(name: &str) -> Vec<u8> {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/read/");
@@ -107,8 +92,8 @@ mod tests {
         let file = data("workbook.xlsx");
         assert!(is(&file));
         let options = ReadOptions::default();
-        let scans = read(&file, &options).unwrap();
-        let (_, csv) = super::super::scans(&data("f14_latin1_degree.csv"), &options).unwrap();
+        let (_, scans) = scans(&file, &options).unwrap();
+        let (_, csv) = crate::input::formats::scans(&data("f14_latin1_degree.csv"), &options).unwrap();
         assert_eq!(scans.len(), 1);
         let rows = |scan: &RawScan| -> Vec<(f64, f64, f64)> {
             scan.rows
@@ -125,7 +110,7 @@ mod tests {
         let mut file = data("workbook.xlsx");
         let end = file.len() - 100;
         file.truncate(end);
-        let error = read(&file, &ReadOptions::default()).unwrap_err();
+        let error = texts(&file).unwrap_err();
         assert!(
             error.what.starts_with("as Excel workbook: ") && !error.what.contains('\n'),
             "{error}"

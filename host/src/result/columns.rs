@@ -310,10 +310,16 @@ fn of_scan() -> Vec<Column> {
     use Json::{Found, Otherwise, Time};
     let proved = "proved: no parameters within the bounds have an MSE^2 below 1 less this of that of the fit";
     let conserved = "reflectance of at most 1 at each angle of incidence";
+    let worst = "angle of incidence where the residual is largest";
     vec![
         text("theta_i_deg", "angles of incidence, degrees", Otherwise, |row| {
             let angles = row.scan?.angles.iter().map(|angle| shortest(angle.degrees()));
             Some(angles.collect::<Vec<_>>().join("+"))
+        }),
+        number("worst_theta_i_deg", "deg", worst, Otherwise, |row| {
+            let angles = row.scan?.angles.iter();
+            let worst = angles.max_by(|a, b| a.rms_ln.total_cmp(&b.rms_ln))?;
+            Some(worst.degrees())
         }),
         number(
             "chi2",

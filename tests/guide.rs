@@ -120,3 +120,78 @@ fn every_file_has_the_version() {
         assert!(text.lines().any(|line| line.starts_with(&start)), "{file}: {start}");
     }
 }
+
+/// Paths below the root and texts of the Rust files in a folder, without comments and those below `tests`.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(Path::new(ROOT).join(folder)).unwrap() {
+        let name = format!("{folder}/{}", entry.unwrap().file_name().into_string().unwrap());
+        if Path::new(ROOT).join(&name).is_dir() {
+            found.extend(sources(&name));
+        } else if name.ends_with(".rs") {
+            let text = fs::read_to_string(Path::new(ROOT).join(&name)).unwrap();
+            let code: Vec<&str> = text
+                .lines()
+                .filter(|line| !line.trim_start().starts_with("//"))
+                .collect();
+            found.push((name, code.join("\n")));
+        }
+    }
+    found
+}
+
+/// The files that have `word` as a word of its own.
+fn having(word: &str, files: &[(String, String)]) -> Vec<String> {
+    let part = |c: char| c.is_alphanumeric() || c == '_';
+    let has = |text: &str| {
+        text.match_indices(word)
+            .any(|(at, _)| !text[..at].ends_with(part) && !text[at + word.len()..].starts_with(part))
+    };
+    let mut found: Vec<String> = files
+        .iter()
+        .filter(|(_, text)| has(text))
+        .map(|(name, _)| name.clone())
+        .collect();
+    found.sort();
+    found
+}
+
+/// What CONTRIBUTING says of additions: what is there is named in as many files.
+#[test]
+fn additions_touch_as_many_files_as_contributing_says() {
+    let input = sources("host/src/input");
+    let formats: Vec<&str> = input
+        .iter()
+        .filter(|(_, text)| text.contains("pub const FORMAT"))
+        .filter_map(|(name, _)| name.strip_prefix("host/src/input/formats/")?.strip_suffix(".rs"))
+        .collect();
+    assert!(formats.len() >= 14, "{formats:?}");
+    for format in formats {
+        let named = having(&format!("{format}::FORMAT"), &input);
+        assert_eq!(named, ["host/src/input/formats.rs"], "{format}");
+    }
+    let all: Vec<_> = ["core/src", "host/src", "host/engine/src"]
+        .into_iter()
+        .flat_map(sources)
+        .collect();
+    let own = |folder: &str| -> Vec<(String, String)> {
+        let files = all.iter().filter(|(name, _)| name.starts_with(folder));
+        let types = files.flat_map(|(name, text)| {
+            let lines = text.lines().filter_map(|line| line.strip_prefix("pub struct "));
+            lines.map(move |line| (name.clone(), line.trim_end_matches(';').to_string()))
+        });
+        types.collect()
+    };
+    let models = own("core/src/models/");
+    assert!(models.len() >= 6, "{models:?}");
+    for (file, model) in models {
+        let named = having(&model, &all);
+        assert_eq!(
+            named,
+            ["core/src/models.rs", file.as_str(), "host/engine/src/models.rs"],
+            "{model}"
+        );
+    }
+    let column = having("worst_theta_i_deg", &all);
+    assert_eq!(column, ["host/src/result/columns.rs"]);
+}

@@ -133,8 +133,8 @@ fn is_target<R: Real>(row: &Row, q: usize) -> bool {
         .map(|j| exponent[j])
         .collect();
     let brightest = shining.iter().copied().fold(f64::INFINITY, f64::min);
-    let (lift, cut) = (R::LIFT.f64() * 0.99, -R::CUT.f64() * 0.99);
-    let diffuse = row.params[0] > R::FAINT.f64();
+    let (lift, cut) = (R::MOST_EXPONENT.f64() * 0.99, -R::LEAST_EXPONENT.f64() * 0.99);
+    let diffuse = row.params[0] > R::LEAST_DIFFUSE.f64();
     // Without enough of a diffuse term the largest exponent is taken out of the sum.
     let shift = if diffuse || shining.is_empty() {
         0.0
@@ -142,9 +142,9 @@ fn is_target<R: Real>(row: &Row, q: usize) -> bool {
         brightest.min(-row.params[0].ln())
     };
     match q {
-        // `Real::LIFT`: the derivative by an absent diffuse term is limited.
+        // `Real::MOST_EXPONENT`: the derivative by an absent diffuse term is limited.
         1 => row.params[0] > 0.0 || shift < lift,
-        // `Real::CUT`: a lobe with an exponent below that counts as 0.
+        // `Real::LEAST_EXPONENT`: a lobe with an exponent below that counts as 0.
         2 | 3 => exponent[q - 2] - shift < cut,
         4.. => shining.is_empty() || brightest - shift < cut,
         _ => true,

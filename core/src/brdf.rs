@@ -99,21 +99,21 @@ pub struct Brdf<R, const TERMS: u8, D = Beckmann, M = VGroove> {
     q: R,
     index: Index<R>,
     /// No diffuse term keeps the lobes from underflow.
-    faint: bool,
+    may_underflow: bool,
     /// Lobes that are not 0 everywhere.
     shining: [bool; LOBES],
     ln_rho_d: R,
-    lift_limit: R,
+    most_shift: R,
     pieces: PhantomData<(D, M)>,
 }
 
 /// What keeps the lobes of a block from underflow.
 #[derive(Clone, Copy, Debug)]
-pub struct Lift<R, const L: usize> {
+pub struct Shifts<R, const L: usize> {
     /// Taken out of the exponents.
     shift: [R; L],
     /// exp(-shift), within limits.
-    lift: [R; L],
+    factor: [R; L],
 }
 
 impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
@@ -201,37 +201,37 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             ],
             q,
             index,
-            faint: D::UNDERFLOWS && !(rho_d > R::FAINT) && (shining[0] || shining[1] || shining[2]),
+            may_underflow: D::UNDERFLOWS && !(rho_d > R::LEAST_DIFFUSE) && (shining[0] || shining[1] || shining[2]),
             shining,
             ln_rho_d,
-            lift_limit: if rho_d > R::TINY { -ln_rho_d } else { R::LIFT },
+            most_shift: if rho_d > R::TINY { -ln_rho_d } else { R::MOST_EXPONENT },
             pieces: PhantomData,
         }
     }
 
     /// Where no diffuse term keeps the lobes from underflow, the largest exponent of each lane.
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    pub(crate) fn lift<const L: usize, const C: usize>(&self, block: &Block<R, L, C>) -> Lift<R, L> {
+    pub(crate) fn shifts<const L: usize, const C: usize>(&self, block: &Block<R, L, C>) -> Shifts<R, L> {
         let mut shift = [R::ZERO; L];
-        let mut lift = [R::ONE; L];
-        if D::UNDERFLOWS && self.faint {
+        let mut factor = [R::ONE; L];
+        if D::UNDERFLOWS && self.may_underflow {
             for lane in 0..L {
-                (shift[lane], lift[lane]) = self.lift_lane(block, lane);
+                (shift[lane], factor[lane]) = self.shift_of_lane(block, lane);
             }
         }
-        Lift { shift, lift }
+        Shifts { shift, factor }
     }
 
     /// The same of one lane, if no diffuse term keeps its lobes from underflow.
     #[inline(always)]
-    fn lift_lane<const L: usize, const C: usize>(&self, block: &Block<R, L, C>, lane: usize) -> (R, R) {
+    fn shift_of_lane<const L: usize, const C: usize>(&self, block: &Block<R, L, C>, lane: usize) -> (R, R) {
         let mut brightest = self.ln_rho_d;
         for place in 0..lobes(TERMS) {
             let lobe = lobe(TERMS, place);
             let exponent = -block.columns[pair(lobe)][lane] * self.inverse_m2[lobe];
             brightest = brightest.max(if self.shining[lobe] { exponent } else { -R::MAX });
         }
-        (brightest, (-brightest).min(self.lift_limit).portable_exp())
+        (brightest, (-brightest).min(self.most_shift).portable_exp())
     }
 
     /// A column of the pair of facet angles of each lobe from place `from` on: lobe by lobe, the `G` lanes of [`Pack::gather`].
@@ -253,13 +253,13 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
 
     /// f of each lobe from place `from` on and of each lane at rho F = 1, times exp(-shift).
     #[inline(always)]
-    fn beams<const K: usize, const G: usize, const L: usize, const C: usize>(
+    fn unit_lobes<const K: usize, const G: usize, const L: usize, const C: usize>(
         &self,
         block: &Block<R, L, C>,
         from: usize,
         shift: Pack<R, G>,
         lane: usize,
-    ) -> Beams<R, K>
+    ) -> UnitLobes<R, K>
     where
         M: Masking<D, C>,
     {
@@ -267,7 +267,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         let inverse_m2 = Self::of_lobes::<K, G>(&self.inverse_m2, from);
         let t = Self::facets::<K, G, L, C>(block, from, 0, lane) * inverse_m2;
         let f = Self::facets::<K, G, L, C>(block, from, 4, lane) * inverse_m2 * D::shape(t, shift, self.q);
-        let mut beams = Beams {
+        let mut unit_lobes = UnitLobes {
             f,
             t,
             masking_slope: Pack::splat(R::ZERO),
@@ -285,10 +285,10 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             let tan2_theta =
                 |column: usize| Pack::<R, K>::from_fn(|k| block.columns[column % C][lane + k % G * (L / G)]);
             let (masking, slope) = M::masking([tan2_theta(6), tan2_theta(7)], m2);
-            beams.f = beams.f * masking;
-            beams.masking_slope = slope;
+            unit_lobes.f = unit_lobes.f * masking;
+            unit_lobes.masking_slope = slope;
         }
-        beams
+        unit_lobes
     }
 
     /// F of each lobe from place `from` on and of each lane; `KP` is `G` times the number of pairs of facet angles.
@@ -327,27 +327,27 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
     >(
         &self,
         block: &Block<R, L, C>,
-        lift: &Lift<R, L>,
+        shifts: &Shifts<R, L>,
         lane: usize,
         rows: &mut Rows<R, G, P>,
     ) where
         M: Masking<D, C>,
     {
-        let shift = Pack::<R, G>::gather(&lift.shift, lane);
-        let lift = Pack::<R, G>::gather(&lift.lift, lane);
+        let shift = Pack::<R, G>::gather(&shifts.shift, lane);
+        let factor = Pack::<R, G>::gather(&shifts.factor, lane);
         let rho = Self::of_lobes::<K, G>(&self.rho, 0);
-        let beams = self.beams::<K, G, L, C>(block, 0, shift, lane);
+        let unit_lobes = self.unit_lobes::<K, G, L, C>(block, 0, shift, lane);
         let fresnel = self.reflect::<K, KP, G, L, C>(block, 0, lane, GRADIENT);
-        let d_rho = beams.f * fresnel.f;
+        let d_rho = unit_lobes.f * fresnel.f;
         let term = rho * d_rho;
-        let f = sum_lobes(lift * self.rho_d_pi, term).map(|f| f.max(R::TINY));
+        let f = sum_lobes(factor * self.rho_d_pi, term).map(|f| f.max(R::TINY));
         rows.ln_f = shift + f.ln();
         if !GRADIENT {
             return;
         }
         let two = R::of(2.0);
         let share = Pack::gather(&block.weight, lane) / f;
-        let weighted = rho * beams.f;
+        let weighted = rho * unit_lobes.f;
         let mut set = |index: usize, value: Pack<R, G>| {
             if has(TERMS, index)
                 && let Some(row) = rows.gradient.get_mut(slot(TERMS, index))
@@ -355,15 +355,15 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
                 *row = value;
             }
         };
-        set(0, lift * share * (R::ONE / R::PI));
+        set(0, factor * share * (R::ONE / R::PI));
         for place in 0..K / G {
             let of_lobe = Pack::<R, G>::from_fn(|k| d_rho.0[place * G + k]);
             set(WEIGHT[lobe(TERMS, place)], of_lobe * share);
         }
         // m d ln(f of a lobe) / dm, over 2.
-        let mut steepness = D::fall(beams.t, self.q) - Pack::splat(R::ONE);
+        let mut steepness = D::fall(unit_lobes.t, self.q) - Pack::splat(R::ONE);
         if M::SLOPED {
-            steepness = steepness + beams.masking_slope * R::of(0.5);
+            steepness = steepness + unit_lobes.masking_slope * R::of(0.5);
         }
         let by_slope = term * steepness;
         for owner in 0..LOBES {
@@ -379,7 +379,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         if D::TAIL {
             set(
                 Q,
-                sum_lobes(Pack::splat(R::ZERO), term * D::tail(beams.t, self.q)) * share,
+                sum_lobes(Pack::splat(R::ZERO), term * D::tail(unit_lobes.t, self.q)) * share,
             );
         }
     }
@@ -394,8 +394,8 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
     where
         M: Masking<D, C>,
     {
-        let beams = self.beams::<K, G, L, C>(block, 0, Pack::splat(R::ZERO), lane);
-        let lobes = beams.f * self.reflect::<K, KP, G, L, C>(block, 0, lane, false).f;
+        let unit_lobes = self.unit_lobes::<K, G, L, C>(block, 0, Pack::splat(R::ZERO), lane);
+        let lobes = unit_lobes.f * self.reflect::<K, KP, G, L, C>(block, 0, lane, false).f;
         let mut columns = [Pack::splat(R::ONE / R::PI); WEIGHTS];
         let diffuse = (TERMS & DIFFUSE != 0) as usize;
         for place in 0..K / G {
@@ -408,7 +408,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
 }
 
 /// What the lobes are made of, in each lane.
-struct Beams<R, const K: usize> {
+struct UnitLobes<R, const K: usize> {
     /// f of each lobe at rho F = 1, sr^-1, times exp(-shift).
     f: Pack<R, K>,
     /// tan^2 theta_h / m^2.

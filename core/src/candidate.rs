@@ -3,8 +3,9 @@
 use crate::boxqp;
 use crate::lm::{Bounds, Linearization};
 use crate::model::{GROUP, Model, Parameter, Role, SUMS, WEIGHTS, Want, weights};
-use crate::pack::{ALONE, Pack};
+use crate::pack::Pack;
 use crate::propose::{self, Shapes};
+use crate::real::ALONE;
 use crate::real::Real;
 use crate::residuals::{Residuals, accumulate, total};
 use crate::search::{Candidate, Region, Scene, Waits};

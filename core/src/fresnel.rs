@@ -1,6 +1,7 @@
 //! Unpolarised Fresnel reflectance of a complex index n - i kappa, with its derivatives.
 
-use crate::pack::{ALONE, Pack};
+use crate::pack::Pack;
+use crate::real::ALONE;
 use crate::real::Real;
 
 /// The index of refraction, and what follows from it alone.

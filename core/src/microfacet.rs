@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::bend::{FINEST, bend, peak, ratio};
-use crate::brdf::{Brdf, EVERY, Lift, SECOND, WEIGHT, get, has, lobes, pair, slot};
+use crate::brdf::{Brdf, EVERY, SECOND, Shifts, WEIGHT, get, has, lobes, pair, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lm::Bounds;
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
@@ -76,7 +76,7 @@ where
 {
     const PARAMETERS: [Parameter; P] = parameters_of(TERMS);
     type Pass = Brdf<R, TERMS, D, M>;
-    type Begun<const L: usize> = Lift<R, L>;
+    type Begun<const L: usize> = Shifts<R, L>;
 
     fn geometry(theta_i: R, theta_s: R, delta_phi: R) -> Result<[R; C], SampleError> {
         M::geometry(theta_i, theta_s, delta_phi)
@@ -88,15 +88,15 @@ where
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn begin<const L: usize>(pass: &Self::Pass, block: &Block<R, L, C>) -> Lift<R, L> {
-        pass.lift(block)
+    fn begin<const L: usize>(pass: &Self::Pass, block: &Block<R, L, C>) -> Shifts<R, L> {
+        pass.shifts(block)
     }
 
     #[inline(always)]
     fn rows<const GRADIENT: bool>(
         pass: &Self::Pass,
         block: &Block<R, LANES, C>,
-        lift: &Lift<R, LANES>,
+        shifts: &Shifts<R, LANES>,
         lane: usize,
     ) -> Rows<R, GROUP, P> {
         const TWO: usize = 2 * GROUP;
@@ -106,11 +106,11 @@ where
             gradient: [Pack::splat(R::ZERO); P],
         };
         match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
-            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
-            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
-            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
-            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, lift, lane, &mut rows),
+            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
+            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
+            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
+            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
+            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
         }
         rows
     }

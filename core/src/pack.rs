@@ -2,8 +2,6 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use crate::real::Real;
-
 /// `K` numbers; each operation is made for all of them before the next.
 ///
 /// A processor looks only some hundred instructions ahead: the links of one long chain leave it idle, those of `K` chains in turn do not.
@@ -11,10 +9,7 @@ use crate::real::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pack<R, const K: usize>(pub [R; K]);
 
-/// A microcontroller has no use for numbers side by side, but little memory: there each goes alone through the longer formulas, of which the image has one copy.
-pub(crate) const ALONE: bool = cfg!(target_os = "none");
-
-impl<R: Real, const K: usize> Pack<R, K> {
+impl<R: Copy + Default, const K: usize> Pack<R, K> {
     /// The same number everywhere.
     #[inline(always)]
     pub fn splat(x: R) -> Self {
@@ -23,7 +18,7 @@ impl<R: Real, const K: usize> Pack<R, K> {
     /// The function of each place. (That of arrays in the standard library is a chain of functions that the compiler may leave as calls, which no vector instructions pass.)
     #[inline(always)]
     pub fn from_fn(f: impl Fn(usize) -> R) -> Self {
-        let mut all = [R::ZERO; K];
+        let mut all = [R::default(); K];
         for (k, x) in all.iter_mut().enumerate() {
             *x = f(k);
         }
@@ -33,33 +28,6 @@ impl<R: Real, const K: usize> Pack<R, K> {
     #[inline(always)]
     pub fn gather<const L: usize>(row: &[R; L], lane: usize) -> Self {
         Self::from_fn(|k| row[lane + k * (L / K)])
-    }
-    /// Exponentials: [`Real::exp_pack`].
-    #[inline(always)]
-    pub fn exp(self) -> Self {
-        if ALONE && K > 1 {
-            self.map(R::portable_exp)
-        } else {
-            R::exp_pack(self)
-        }
-    }
-    /// Natural logarithms: [`Real::ln_pack`].
-    #[inline(always)]
-    pub fn ln(self) -> Self {
-        if ALONE && K > 1 {
-            self.map(R::portable_ln)
-        } else {
-            R::ln_pack(self)
-        }
-    }
-    /// Reciprocals of the square roots: [`Real::rsqrt_pack`].
-    #[inline(always)]
-    pub fn rsqrt(self) -> Self {
-        if ALONE && K > 1 {
-            self.map(R::rsqrt)
-        } else {
-            R::rsqrt_pack(self)
-        }
     }
     /// One function of each.
     #[inline(always)]
@@ -81,14 +49,14 @@ impl<R: Real, const K: usize> Pack<R, K> {
 
 macro_rules! operator {
     ($trait:ident, $method:ident) => {
-        impl<R: Real, const K: usize> $trait for Pack<R, K> {
+        impl<R: Copy + Default + $trait<Output = R>, const K: usize> $trait for Pack<R, K> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 self.zip(other, R::$method)
             }
         }
-        impl<R: Real, const K: usize> $trait<R> for Pack<R, K> {
+        impl<R: Copy + Default + $trait<Output = R>, const K: usize> $trait<R> for Pack<R, K> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: R) -> Self {

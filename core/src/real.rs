@@ -46,11 +46,11 @@ pub trait Real:
     /// Small enough to vanish beside any cosine squared, with a square that is still positive.
     const TINY: Self;
     /// A diffuse term below this does not keep the lobes from underflow: see `brdf`.
-    const FAINT: Self;
+    const LEAST_DIFFUSE: Self;
     /// A lobe with an exponent below this counts as 0: its square must still be normal, for subnormal numbers cost a hundredfold.
-    const CUT: Self;
+    const LEAST_EXPONENT: Self;
     /// Largest exponent in the derivative of an absent lobe, so that its square stays finite.
-    const LIFT: Self;
+    const MOST_EXPONENT: Self;
 
     /// The nearest value of this type.
     fn of(x: f64) -> Self;
@@ -121,6 +121,40 @@ pub trait Real:
     fn abs(self) -> Self;
 }
 
+/// A microcontroller has no use for numbers side by side, but little memory: there each goes alone through the longer formulas, of which the image has one copy.
+pub(crate) const ALONE: bool = cfg!(target_os = "none");
+
+/// The elementary functions of numbers side by side.
+impl<R: Real, const K: usize> Pack<R, K> {
+    /// Exponentials: [`Real::exp_pack`].
+    #[inline(always)]
+    pub fn exp(self) -> Self {
+        if ALONE && K > 1 {
+            self.map(R::portable_exp)
+        } else {
+            R::exp_pack(self)
+        }
+    }
+    /// Natural logarithms: [`Real::ln_pack`].
+    #[inline(always)]
+    pub fn ln(self) -> Self {
+        if ALONE && K > 1 {
+            self.map(R::portable_ln)
+        } else {
+            R::ln_pack(self)
+        }
+    }
+    /// Reciprocals of the square roots: [`Real::rsqrt_pack`].
+    #[inline(always)]
+    pub fn rsqrt(self) -> Self {
+        if ALONE && K > 1 {
+            self.map(R::rsqrt)
+        } else {
+            R::rsqrt_pack(self)
+        }
+    }
+}
+
 impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
@@ -129,9 +163,9 @@ impl Real for f64 {
     const MIN_POSITIVE: Self = f64::MIN_POSITIVE;
     const MAX: Self = f64::MAX;
     const TINY: Self = 1e-140;
-    const FAINT: Self = 1e-60;
-    const CUT: Self = -300.0;
-    const LIFT: Self = 200.0;
+    const LEAST_DIFFUSE: Self = 1e-60;
+    const LEAST_EXPONENT: Self = -300.0;
+    const MOST_EXPONENT: Self = 200.0;
     const EXPONENTS: (Self, Self) = (-708.0, 709.0);
 
     #[inline(always)]
@@ -275,9 +309,9 @@ impl Real for f32 {
     const MIN_POSITIVE: Self = f32::MIN_POSITIVE;
     const MAX: Self = f32::MAX;
     const TINY: Self = 1e-16;
-    const FAINT: Self = 1e-3;
-    const CUT: Self = -38.0;
-    const LIFT: Self = 20.0;
+    const LEAST_DIFFUSE: Self = 1e-3;
+    const LEAST_EXPONENT: Self = -38.0;
+    const MOST_EXPONENT: Self = 20.0;
     const EXPONENTS: (Self, Self) = (-87.0, 88.0);
 
     #[inline(always)]

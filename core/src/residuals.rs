@@ -7,7 +7,8 @@ use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::microfacet::Microfacet;
 use crate::model::{GROUP, Model, Parameter, SUMS, Seen, Want};
-use crate::pack::{ALONE, Pack};
+use crate::pack::Pack;
+use crate::real::ALONE;
 use crate::real::Real;
 
 /// The blocks of one scan, for model `M` with its `P` parameters, which needs `C` numbers of each pair of directions.

@@ -25,34 +25,34 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         // So the compiler sees that no index is out of range.
         let lane = lane % L;
         let gradient = want == Want::Gradient;
-        let (shift, lift) = if D::UNDERFLOWS && self.faint && want != Want::Columns {
-            self.lift_lane(block, lane)
+        let (shift, factor) = if D::UNDERFLOWS && self.may_underflow && want != Want::Columns {
+            self.shift_of_lane(block, lane)
         } else {
             (R::ZERO, R::ONE)
         };
-        let mut f = lift * self.rho_d_pi;
+        let mut f = factor * self.rho_d_pi;
         let mut d_rho = [R::ZERO; LOBES];
         let mut by_slope = [R::ZERO; LOBES];
         let (mut by_n2, mut by_kappa2, mut by_q) = (R::ZERO, R::ZERO, R::ZERO);
         for place in 0..lobes(TERMS) {
             let lobe = lobe(TERMS, place);
-            let beams = self.beams::<1, 1, L, C>(block, place, Pack([shift]), lane);
+            let unit_lobes = self.unit_lobes::<1, 1, L, C>(block, place, Pack([shift]), lane);
             let cos_theta_d = block.columns[2 + pair(lobe)][lane];
             let fresnel = self.index.reflect_pack(Pack([cos_theta_d]), gradient);
-            d_rho[lobe] = beams.f.0[0] * fresnel.f.0[0];
+            d_rho[lobe] = unit_lobes.f.0[0] * fresnel.f.0[0];
             let term = self.rho[lobe] * d_rho[lobe];
             f += term;
             if gradient {
-                let mut steepness = D::fall(beams.t, self.q).0[0] - R::ONE;
+                let mut steepness = D::fall(unit_lobes.t, self.q).0[0] - R::ONE;
                 if M::SLOPED {
-                    steepness += beams.masking_slope.0[0] * R::of(0.5);
+                    steepness += unit_lobes.masking_slope.0[0] * R::of(0.5);
                 }
                 by_slope[const { owners(TERMS) }[lobe]] += term * steepness;
-                let weighted = self.rho[lobe] * beams.f.0[0];
+                let weighted = self.rho[lobe] * unit_lobes.f.0[0];
                 by_n2 += weighted * fresnel.d_n2.0[0];
                 by_kappa2 += weighted * fresnel.d_kappa2.0[0];
                 if D::TAIL {
-                    by_q += term * D::tail(beams.t, self.q).0[0];
+                    by_q += term * D::tail(unit_lobes.t, self.q).0[0];
                 }
             }
         }
@@ -60,7 +60,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         if want != Want::Value {
             let two = R::of(2.0);
             let share = if gradient { block.weight[lane] / f } else { R::ONE };
-            set::<0, TERMS, R, P>(row, lift * share * (R::ONE / R::PI));
+            set::<0, TERMS, R, P>(row, factor * share * (R::ONE / R::PI));
             set::<1, TERMS, R, P>(row, d_rho[0] * share);
             set::<2, TERMS, R, P>(row, d_rho[1] * share);
             set::<RHO_2, TERMS, R, P>(row, d_rho[2] * share);

@@ -14,9 +14,12 @@ impl Distribution for Beckmann {
 
     #[inline(always)]
     fn shape<R: Real, const K: usize>(t: Pack<R, K>, shift: Pack<R, K>, _q: R) -> Pack<R, K> {
-        let exponent = (t.map(|t| -t) - shift).map(|x| x.min(R::LIFT));
+        let exponent = (t.map(|t| -t) - shift).map(|x| x.min(R::MOST_EXPONENT));
         // What is too low for it is cut.
-        exponent.zip(R::exp_within(exponent), |x, e| if x < R::CUT { R::ZERO } else { e })
+        exponent.zip(
+            R::exp_within(exponent),
+            |x, e| if x < R::LEAST_EXPONENT { R::ZERO } else { e },
+        )
     }
 
     #[inline(always)]

@@ -15,7 +15,7 @@ impl Distribution for HyperCauchy {
     #[inline(always)]
     fn shape<R: Real, const K: usize>(t: Pack<R, K>, _shift: Pack<R, K>, q: R) -> Pack<R, K> {
         let exponent = (t + R::ONE).ln() * -q;
-        exponent.zip(exponent.exp(), |x, e| if x < R::CUT { R::ZERO } else { e }) * (q - R::ONE)
+        exponent.zip(exponent.exp(), |x, e| if x < R::LEAST_EXPONENT { R::ZERO } else { e }) * (q - R::ONE)
     }
 
     #[inline(always)]

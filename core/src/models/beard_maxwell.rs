@@ -51,7 +51,7 @@ impl Formula<7> for BeardMaxwell {
         let cos2_theta_h = R::ONE / (R::ONE + at.tan2_theta_h);
         // What is too low for the exponential of this type counts as 0.
         let exponent = N::of(-theta_h * theta_h) / m.squared();
-        let density = if exponent.value() < R::CUT {
+        let density = if exponent.value() < R::LEAST_EXPONENT {
             N::of(R::ZERO)
         } else {
             exponent.exp()

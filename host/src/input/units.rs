@@ -170,7 +170,7 @@ impl Quantity {
     /// The BRDF in sr^-1.
     ///
     /// # Errors
-    /// Why the value has none: it is not positive, or no number of the machine.
+    /// Why the value has none: it is not positive, or beyond the range of `f64`.
     pub fn brdf(self, value: f64, theta_s: f64) -> Result<f64, String> {
         let fail = |why: &str| Err(format!("{} is {}, {why}", self.title(), shortest(value)));
         if !value.is_finite() {

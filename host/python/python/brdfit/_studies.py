@@ -6,7 +6,6 @@ import json
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,21 +13,13 @@ from numpy.typing import NDArray
 
 from . import _brdfit, _options
 from ._brdfit import Scan
+from ._command import exported, run, write
 from ._fit import proof, told
 from .results import Fit
 
 if TYPE_CHECKING:
     import pandas as pd
     from typing_extensions import Unpack
-
-
-def _run(command: str, words: Iterable[str], scans: str) -> bytes:
-    code, output, errors = _brdfit.command([command, "-", *words], scans.encode())
-    if code != 0:
-        # Of wrong options the first paragraph says what is wrong.
-        told = " ".join(line.strip() for line in errors.split("\n\n")[0].splitlines())
-        raise ValueError(_options.in_python(told.removeprefix("error: ")))
-    return output
 
 
 def _subject(of: Scan | Fit, search: _options.Search) -> tuple[Scan, dict[str, Any]]:
@@ -121,7 +112,7 @@ def profile(
     scan, options = _subject(of, search)
     own = {"parameter": parameters or None, "bootstrap": bootstrap, "calibrate": calibrate}
     words = ["--format=json", *_options.words(own, own, "profile"), *_options.search(options, "profile")]
-    details = json.loads(_run("profile", words, scan.table()))
+    details = json.loads(run("profile", words, scan.table()))
 
     def one(found: dict[str, Any]) -> Profile:
         points = found["points"]
@@ -181,7 +172,7 @@ def compare(of: Scan | Fit, models: str | Iterable[str] = "auto", *, seed: int =
     """
     scan, _ = _subject(of, {})
     own = {"models": models, "seed": seed}
-    details = json.loads(_run("compare", ["--format=json", *_options.words(own, own, "compare")], scan.table()))
+    details = json.loads(run("compare", ["--format=json", *_options.words(own, own, "compare")], scan.table()))
     return Comparison(details["model"], details["models"])
 
 
@@ -221,7 +212,7 @@ def joint(scans: Sequence[Scan | Fit], share: str | Iterable[str] = "m", **searc
     own = {"share": share}
     words = ["--format=json", *_options.words(own, own, "joint"), *_options.search(search, "joint")]
     all_of_them = _brdfit.table([_subject(one, {})[0] for one in scans])
-    details = json.loads(_run("joint", words, all_of_them))
+    details = json.loads(run("joint", words, all_of_them))
     order = [name for name, *_ in _brdfit.names(details["model"])]
     return Joint(
         model=details["model"],
@@ -265,7 +256,7 @@ def report(
     shown = ", ".join(f"{name}={value!r}" for name, value in options.items())
     with told():
         page = _brdfit.report([_subject(one, {})[0] for one in every], words, claim, f"brdfit.report({shown})")
-    _write(page, path)
+    write(page, path)
     return page
 
 
@@ -283,12 +274,4 @@ def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **opti
     ------
     ValueError : the form does not exist, or cannot hold the model.
     """
-    own = {"to": to, **options}
-    text = _run("export", _options.words(own, own, "export"), fit.json).decode()
-    _write(text, path)
-    return text
-
-
-def _write(text: str, path: str | os.PathLike[str] | None) -> None:
-    if path is not None:
-        Path(path).write_text(text, encoding="utf-8", newline="\n")
+    return exported(fit.json, to, path, **options)

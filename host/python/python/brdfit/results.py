@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _brdfit, _draw
+from . import _brdfit, _command, _draw
 from ._arrays import DEGREES, broadcast, numbers
 
 if TYPE_CHECKING:
@@ -176,9 +176,7 @@ class Fit:
 
     def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str:
         """The model for another program: the text that `brdfit export --to` writes, and into a file if `path` names one. Further keywords are its options, such as wavelength."""
-        from ._studies import export
-
-        return export(self, to, path, **options)
+        return _command.exported(self.json, to, path, **options)
 
     def svg(self, title: str = "") -> str:
         """The picture of the scan with its distinct minima that `brdfit fit --plot` draws."""

@@ -71,9 +71,9 @@ pub fn natural_scale(sample: &Sample<f64>, params: [f64; 6], exact: [f64; 7]) ->
     scale
 }
 
-/// False for a derivative by an absent diffuse term that [`Real::LIFT`] limits, which is documented and no error.
+/// False for a derivative by an absent diffuse term that [`Real::MOST_EXPONENT`] limits, which is documented and no error.
 fn is_promised<R: Real>(q: usize, params: [f64; 6], exact: [f64; 7]) -> bool {
-    let faint = q == 1 && params[0] == 0.0 && exact[0] < -R::LIFT.f64() * 0.9;
+    let faint = q == 1 && params[0] == 0.0 && exact[0] < -R::MOST_EXPONENT.f64() * 0.9;
     !faint && exact[q].abs() < R::MAX.f64()
 }
 

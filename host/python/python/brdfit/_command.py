@@ -1,0 +1,34 @@
+"""Commands of the program, and what they write."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from . import _brdfit, _options
+
+
+def run(command: str, words: Iterable[str], scans: str) -> bytes:
+    """What a command prints whose input is `scans`."""
+    code, output, errors = _brdfit.command([command, "-", *words], scans.encode())
+    if code != 0:
+        # Of wrong options the first paragraph says what is wrong.
+        told = " ".join(line.strip() for line in errors.split("\n\n")[0].splitlines())
+        raise ValueError(_options.in_python(told.removeprefix("error: ")))
+    return output
+
+
+def exported(result: str, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str:
+    """The model of a result in JSON as `brdfit export --to` writes it, and into a file if `path` names one."""
+    own = {"to": to, **options}
+    text = run("export", _options.words(own, own, "export"), result).decode()
+    write(text, path)
+    return text
+
+
+def write(text: str, path: str | os.PathLike[str] | None) -> None:
+    """Writes a file, if `path` names one, with the line ends as they are."""
+    if path is not None:
+        Path(path).write_text(text, encoding="utf-8", newline="\n")

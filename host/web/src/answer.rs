@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use brdfit::analysis::choose::choose;
 use brdfit::analysis::converge::study;
-use brdfit::analysis::fit::FittedScan;
+use brdfit::analysis::fit::{FittedScan, prove};
 use brdfit::analysis::profile::findings::{Asked, find};
-use brdfit::analysis::proof::{Goal, provable, prove};
+use brdfit::analysis::proof::{Goal, provable};
 use brdfit::engine::certify::Certificate;
 use brdfit::engine::models::MODELS;
 use brdfit::engine::{FitOptions, Model};

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
-use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit};
-use crate::analysis::proof::{Goal, prove};
+use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit, prove};
+use crate::analysis::proof::Goal;
 use crate::engine::Model;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};

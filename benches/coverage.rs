@@ -9,6 +9,7 @@ use brdfit::analysis::misfit::{coverage_factor, inflation};
 use brdfit::analysis::profile::{calibrate::threshold, hold::hold};
 use brdfit::engine::uncertainty::Uncertainty;
 use brdfit::engine::{Material, fit};
+use brdfit::input::Measurement;
 use brdfit_core::geometry::Sample;
 use copies::{Noise, SCENES, Scene};
 use rayon::prelude::*;
@@ -83,7 +84,8 @@ fn one(scene: &Scene, noise: Noise, copy: u64) -> Held {
     let options = scene.options();
     let found = fit(&samples, &options).expect("simulated scans are valid");
     let independent = found.uncertainty.clone();
-    let outcome = known(&samples, &options, found.clone());
+    let measurement = Measurement::of_samples(scene.name, samples.clone(), None);
+    let (outcome, _) = known(&measurement, &samples, &options, found.clone());
     let theta_i = scene.angles[scene.angles.len() / 2].to_radians();
     let material = outcome.material();
     let actual = quantities(&truth, theta_i, &independent);

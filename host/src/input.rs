@@ -42,6 +42,7 @@ pub mod unit;
 pub mod units;
 mod wavelength;
 pub mod weight;
+mod wide;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -191,6 +192,11 @@ pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Meas
 /// The scans that are wanted of the bytes of a file, as they stand there, and its format.
 fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Error> {
     let (format, scans) = formats::scans(bytes, options)?;
+    if !options.sheet.is_empty() && format.name != "xlsx" {
+        return Err(
+            Error::new(format!("--sheet is for Excel workbooks, and this is {}", format.title)).help("leave it out"),
+        );
+    }
     if let Some(scan) = scans.first() {
         options.refuse_for(scan.about.kind, format.title)?;
     }

@@ -3,6 +3,7 @@
 mod columns;
 mod files;
 mod numbers;
+mod wide;
 
 use std::fs;
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::columns::Polar;
 use super::kind::Kind;
 use super::options::ReadOptions;
 use super::source::Source;
@@ -21,6 +22,8 @@ pub struct About {
     pub theta_i: ThetaI,
     /// True if the file has one angle of incidence, which no column gives.
     pub one_angle: bool,
+    /// The angle that the heads of columns give, if they do; it has no unit in common with the other.
+    pub angle_of_heads: Option<Polar>,
     /// True if the program wrote the file, so that there is no doubt about it.
     pub settled: bool,
     /// True if a name or an option gives the unit of the angles.
@@ -54,6 +57,7 @@ impl Default for About {
             unused: Vec::new(),
             theta_i: ThetaI::Column,
             one_angle: false,
+            angle_of_heads: None,
             settled: false,
             angles_named: true,
             divisor: 1.0,

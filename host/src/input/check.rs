@@ -57,6 +57,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
                 faults.add(row.line, column, what);
                 faults.near_retro += usize::from(is_near_retro(row, &read_as));
                 faults.negative += usize::from(row.value < 0.0);
+                faults.no_angle += usize::from(row.theta_i.is_nan());
             }
         }
     }
@@ -321,6 +322,8 @@ struct Faults {
     /// How many are close to the direction of incidence, where a detector blocks the beam.
     near_retro: usize,
     negative: usize,
+    /// How many have no angle of incidence.
+    no_angle: usize,
     first: Option<(u64, Option<u64>, String)>,
     lines: Vec<String>,
 }
@@ -345,7 +348,9 @@ impl Faults {
             let lines = self.lines.join(", ");
             what += &format!(" ({} rows are not valid, on lines {lines}{more})", self.count);
         }
-        let help = if 2 * self.negative > rows {
+        let help = if self.no_angle == self.count && self.count < rows {
+            "write the angle in every row (of merged cells only the first has it), or use --drop-invalid to leave such rows out"
+        } else if 2 * self.negative > rows {
             "most values are negative: are they logarithms? say so with --quantity ln-brdf or log10-brdf"
         } else if 2 * self.near_retro > self.count {
             "most are where a detector blocks the incident beam: use --mask-retro 6, or --drop-invalid to leave such rows out"

@@ -9,8 +9,8 @@ use super::units::{Angles, Quantity};
 pub struct Columns {
     /// Angle of incidence; none if it is not in the table.
     pub theta_i: Option<usize>,
-    /// Scattering angle.
-    pub theta_s: usize,
+    /// Scattering angle; none if the heads give it.
+    pub theta_s: Option<usize>,
     /// The azimuth; without it the scan is in plane.
     pub azimuth: Option<Azimuth>,
     /// The unit of all angles.
@@ -59,6 +59,36 @@ pub struct Value {
     pub divisor: f64,
     /// Its standard deviation or weight, and which of these it is.
     pub weight: Option<(usize, WeightKind)>,
+    /// The angle that its head gives, in the unit of the angles, and which it is.
+    pub angle: Option<(Polar, f64)>,
+    /// Which scan of a group of rows it belongs to.
+    pub scan: usize,
+}
+
+impl Value {
+    /// Does its head give the angle of incidence?
+    pub fn gives_theta_i(&self) -> bool {
+        matches!(self.angle, Some((Polar::Incidence, _)))
+    }
+}
+
+/// A polar angle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Polar {
+    /// That of incidence.
+    Incidence,
+    /// That of scattering.
+    Scattering,
+}
+
+impl Polar {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Polar::Incidence => "theta_i",
+            Polar::Scattering => "theta_s",
+        }
+    }
 }
 
 /// What a column says of the uncertainty of another.

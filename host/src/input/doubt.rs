@@ -1,5 +1,6 @@
 //! Numbers that cannot be what they are taken for, and angles of a full turn.
 
+use super::columns::Polar;
 use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
@@ -43,7 +44,12 @@ fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
 
 /// Are degrees radians, or radians degrees?
 fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
-    let polar = largest(scan.rows.iter().flat_map(|row| [row.theta_i, row.theta_s]));
+    // What an option, a remark or a head gives has a unit of its own.
+    let polar = match (scan.about.one_angle, scan.about.angle_of_heads) {
+        (true, _) | (_, Some(Polar::Incidence)) => largest(scan.rows.iter().map(|row| row.theta_s)),
+        (_, Some(Polar::Scattering)) => largest(scan.rows.iter().map(|row| row.theta_i)),
+        (false, None) => largest(scan.rows.iter().flat_map(|row| [row.theta_i, row.theta_s])),
+    };
     let Some(first) = scan.rows.first() else { return Ok(()) };
     let at = |error: Error| {
         if first.line > 0 {

@@ -100,6 +100,8 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
             quantity,
             divisor: divisor(&heads[column], column, options)?,
             weight: None,
+            angle: None,
+            scan: values.len(),
         });
     }
     if let Some((place, part)) = weight {
@@ -134,7 +136,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
     let (angles, angles_named) = angles(&heads, theta_i, theta_s, azimuth, options)?;
     Ok(Columns {
         theta_i,
-        theta_s,
+        theta_s: Some(theta_s),
         azimuth,
         angles,
         angles_named,
@@ -238,7 +240,7 @@ mod tests {
             let columns = find(header).unwrap();
             assert_eq!(
                 (columns.theta_i, columns.theta_s, columns.values[0].column),
-                (Some(0), 1, 2),
+                (Some(0), Some(1), 2),
                 "{header}"
             );
             assert_eq!((columns.values[0].quantity, columns.azimuth), (Quantity::Brdf, None));
@@ -246,7 +248,7 @@ mod tests {
         let columns = find("ln_brdf,note,phi_s_deg,theta_s,theta_i,phi_i").unwrap();
         assert_eq!(
             (columns.theta_i, columns.theta_s, columns.values[0].column),
-            (Some(4), 3, 0)
+            (Some(4), Some(3), 0)
         );
         assert_eq!(
             (columns.values[0].quantity, columns.azimuth, &columns.unused[..]),

@@ -26,6 +26,7 @@ use super::options::ReadOptions;
 use super::raw::RawScan;
 use super::{bytes, table};
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// All formats in the order in which they are tried; a table is what is left, and comes last.
 static ALL: [Format; 15] = [
@@ -82,7 +83,9 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Er
         let is_it = |is: fn(&[u8]) -> bool| asked == Some(format) || asked.is_none() && is(file);
         match format.reader {
             Reader::Bytes { is, read } if is_it(is) => return Ok((format, read(file, options)?)),
-            Reader::Sheets { is, texts } if is_it(is) => return Ok((format, of_sheets(texts(file)?, options)?)),
+            Reader::Sheets { is, texts } if is_it(is) => {
+                return Ok((format, of_sheets(&texts(file, &options.sheet)?, options)?));
+            }
             _ => {}
         }
     }
@@ -91,17 +94,22 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Er
 }
 
 /// The scans of each sheet, whose name tells them apart if there are several.
-fn of_sheets(sheets: Vec<NamedText>, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+fn of_sheets(sheets: &[NamedText], options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let several = sheets.len() > 1;
     let mut scans = Vec::new();
     for NamedText { name, text } in sheets {
-        let (_, found) = of_text(&text, None, options).map_err(|error| {
-            let what = if several {
-                format!("sheet {}: {}", shown(&name), error.what)
-            } else {
-                error.what
+        let (_, found) = of_text(text, None, options).map_err(|error| {
+            if !several {
+                return error;
+            }
+            let names: Vec<String> = sheets.iter().map(|sheet| shown(&sheet.name)).collect();
+            let choice = format!("--sheet chooses among {}", some_of(&names));
+            let help = match &error.help {
+                Some(help) => format!("{help}; {choice}"),
+                None => choice,
             };
-            Error { what, ..error }
+            let what = format!("sheet {}: {}", shown(name), error.what);
+            Error { what, ..error }.help(help)
         })?;
         scans.extend(found.into_iter().map(|mut scan| {
             scan.names.splice(0..0, several.then(|| name.clone()));

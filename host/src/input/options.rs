@@ -20,6 +20,9 @@ pub struct ReadOptions {
     /// Format of the files [default: known by their content]
     #[cfg_attr(feature = "cli", arg(long, value_name = "FORMAT"))]
     pub input_format: Option<String>,
+    /// Sheets of an Excel workbook to take, by name or number [default: all that have numbers]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "NAME,...", value_delimiter = ','))]
+    pub sheet: Vec<String>,
     /// Scans to take, by the name of their column, wavelength or polarisation [default: all]
     #[cfg_attr(feature = "cli", arg(long, value_name = "NAME,...", value_delimiter = ','))]
     pub column: Vec<String>,

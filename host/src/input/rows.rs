@@ -23,7 +23,7 @@ pub fn delimiter(line: &str) -> Option<u8> {
 }
 
 /// The lines of a text with their numbers, from 1, and where they begin; any kind of line ends is fine.
-pub fn lines(text: &str) -> impl Iterator<Item = (u64, usize, &str)> {
+pub fn lines(text: &str) -> impl Iterator<Item = (u64, usize, &str)> + Clone {
     let bytes = text.as_bytes();
     let mut start = 0;
     (1..).map_while(move |number| {

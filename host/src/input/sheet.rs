@@ -5,7 +5,7 @@ use super::head::Head;
 use super::role::{self, Role};
 use super::rows::{self, Decimal};
 use super::unit::Unit;
-use super::{channel, options::ReadOptions};
+use super::{channel, options::ReadOptions, wide};
 use crate::error::Error;
 
 /// A table in a text.
@@ -49,7 +49,7 @@ impl<'a> Sheet<'a> {
             if line.text.trim().is_empty() {
                 continue;
             }
-            if rows::is_remark(line.text) || line.text.trim_start().starts_with(['%', '!']) {
+            if is_remark(line.text) {
                 above.push(line);
                 continue;
             }
@@ -67,7 +67,12 @@ impl<'a> Sheet<'a> {
                 Some(delimiter) => Some(Some(delimiter)).filter(|_| is_row(&cells, true) || is_row(&cells, false)),
                 None => delimiter_of_row(line.text),
             };
-            if let Some(delimiter) = found {
+            // Angles may stand over the names, as in `,20,20,40,40` over `theta_s,R,G,R,G`.
+            let is_over_names =
+                || cells.first() == Some(&"") && Sheet::has_names_below(text, start, delimiter, cells.len());
+            if let Some(delimiter) = found
+                && !is_over_names()
+            {
                 return Sheet::without_heads(text, start, line, delimiter, &above, options);
             }
             above.push(line);
@@ -81,7 +86,16 @@ impl<'a> Sheet<'a> {
         Ok(Sheet::with_heads(text, start, line, &cells, delimiter, &[]))
     }
 
-    /// A table below a line of names, and perhaps one of units.
+    /// Is the line below the one that begins at `start` one of so many names?
+    fn has_names_below(text: &str, start: usize, delimiter: Option<u8>, width: usize) -> bool {
+        let below = rows::lines(&text[start..]).nth(1);
+        below.is_some_and(|(_, _, below)| {
+            let cells = rows::split(below, delimiter);
+            cells.len() == width && is_head(&cells) && !is_pair(&cells)
+        })
+    }
+
+    /// A table below a line of names, and perhaps one of units, or one that the names go on in.
     fn with_heads(
         text: &'a str,
         start: usize,
@@ -98,7 +112,11 @@ impl<'a> Sheet<'a> {
             .map(|(number, begin, below)| (line.number + number - 1, start + begin, below))
             .filter(|(_, _, below)| !rows::is_remark(below));
         let mut next = below.next();
+        if let Some(names) = over_names(above.last(), line.number, cells, delimiter) {
+            heads = names.iter().map(|name| Head::new(name)).collect();
+        }
         if let Some((_, _, units)) = next {
+            let beyond = below.clone().next().map(|(_, _, row)| row);
             let cells = rows::split(units, delimiter);
             let known = cells.iter().all(|cell| cell.is_empty() || Unit::parse(cell).is_some());
             let words = cells.iter().any(|cell| !cell.is_empty() && !is_number(cell));
@@ -108,6 +126,10 @@ impl<'a> Sheet<'a> {
                     .zip(&cells)
                     .map(|(head, unit)| head.with_unit(unit))
                     .collect();
+                next = below.next();
+            } else if beyond.is_some_and(|row| goes_on(&heads, &cells, &rows::split(row, delimiter))) {
+                let upper: Vec<&str> = heads.iter().map(|head| head.text.as_str()).collect();
+                heads = joined(&upper, &cells).iter().map(|name| Head::new(name)).collect();
                 next = below.next();
             }
         }
@@ -144,7 +166,14 @@ impl<'a> Sheet<'a> {
         let known = known.filter_map(|(place, remark)| Some((place, names_in(remark.text, width, delimiter)?)));
         let last = above.len().checked_sub(1);
         let foreign = last.and_then(|place| Some((place, foreign_names(above[place].text, width, delimiter)?)));
-        let named = known.chain(foreign).next();
+        let both = last.and_then(|place| Some((place, names_in_two(above, width, delimiter)?)));
+        let owned =
+            |(place, names): (usize, Vec<&str>)| (place, names.into_iter().map(String::from).collect::<Vec<_>>());
+        let named = both
+            .into_iter()
+            .chain(known.map(owned))
+            .chain(foreign.map(owned))
+            .next();
         let (at, heads) = match named {
             Some((place, names)) => {
                 let mut heads: Vec<Head> = names.iter().map(|name| Head::new(name)).collect();
@@ -208,6 +237,47 @@ impl<'a> Sheet<'a> {
     }
 }
 
+/// Names broken over two lines; the upper of merged cells is that of all below it.
+fn joined(upper: &[&str], lower: &[&str]) -> Vec<String> {
+    let mut last = "";
+    let mut names = Vec::new();
+    for (&upper, &lower) in upper.iter().zip(lower) {
+        if !upper.is_empty() {
+            // What has nothing below it, or its unit, is the name of its own column.
+            let is_own = lower.is_empty() || Unit::parse(lower).is_some();
+            last = if is_own { "" } else { upper };
+        }
+        let over = if upper.is_empty() && !lower.is_empty() {
+            last
+        } else {
+            upper
+        };
+        names.push(format!("{over} {lower}").trim().to_string());
+    }
+    names
+}
+
+/// True if names go on in the line below them: it has no numbers where the angles are, and the row below has.
+fn goes_on(heads: &[Head], below: &[&str], row: &[&str]) -> bool {
+    let is_angle = |head: &Head| matches!(role::role(head), Role::ThetaI | Role::ThetaS | Role::Theta);
+    let mut angles = (0..heads.len()).filter(|&k| is_angle(&heads[k])).peekable();
+    below.len() == heads.len()
+        && row.len() == heads.len()
+        && below.iter().any(|cell| !cell.is_empty())
+        && angles.peek().is_some()
+        && angles.all(|k| !is_number(below[k]) && is_number(row[k]))
+}
+
+/// The names with the angles in the line right above them, if that has angles alone.
+fn over_names(above: Option<&Line>, number: u64, names: &[&str], delimiter: Option<u8>) -> Option<Vec<String>> {
+    let line = above.filter(|line| line.number + 1 == number && !is_remark(line.text))?;
+    let angles = rows::split(line.text, delimiter);
+    let both = joined(&angles, names);
+    let fits = |(angle, both): (&&str, &String)| angle.is_empty() || wide::at(both).is_some();
+    let all = angles.len() == names.len() && angles.iter().any(|angle| !angle.is_empty());
+    (all && angles.iter().zip(&both).all(fits)).then_some(both)
+}
+
 /// The delimiter in a line such as `sep=;`, which spreadsheets write and read.
 fn separator(line: &str) -> Option<u8> {
     let (key, mark) = line.trim_matches(['"', '\r', '\u{feff}']).split_once('=')?;
@@ -223,12 +293,17 @@ fn is_number(cell: &str) -> bool {
     rows::parse(cell, Decimal::Unknown).is_some()
 }
 
+/// True of lines that no table has.
+fn is_remark(line: &str) -> bool {
+    rows::is_remark(line) || line.trim_start().starts_with(['%', '!'])
+}
+
 /// True of names: no angle is a number, and at least two are known.
 fn is_head(cells: &[&str]) -> bool {
     let known = |cell: &&&str| {
         let head = Head::new(cell);
         let role = role::role(&head);
-        !matches!(role, Role::Unknown(_) | Role::Repeat | Role::Unit) || channel::is(&head)
+        !matches!(role, Role::Unknown(_) | Role::Repeat | Role::Unit) || channel::is(&head) || wide::at(cell).is_some()
     };
     let names = cells.iter().filter(|cell| !is_number(cell));
     cells.len() > 1
@@ -311,6 +386,25 @@ fn parts(remark: &str, delimiter: Option<u8>) -> Vec<Vec<&str>> {
 fn names_in(remark: &str, width: usize, delimiter: Option<u8>) -> Option<Vec<&str>> {
     let known = |names: &Vec<&str>| names.len() == width && is_head(names);
     parts(remark, delimiter).into_iter().find(known)
+}
+
+/// The names in the last two lines above the rows: one below the other, or the second after the first.
+fn names_in_two(above: &[Line], width: usize, delimiter: Option<u8>) -> Option<Vec<String>> {
+    let [.., upper, lower] = above else { return None };
+    let uppers = parts(upper.text, delimiter);
+    let pairs = uppers.iter().zip(parts(lower.text, delimiter));
+    let either = pairs.flat_map(|(upper, lower)| {
+        let words = !upper.iter().any(|cell| is_number(cell)) && lower.iter().any(|cell| !cell.is_empty());
+        let after = words.then(|| [&upper[..], &lower[..]].concat());
+        let below = (upper.len() == lower.len()).then(|| joined(upper, &lower));
+        let after = after.map(|names| names.into_iter().map(String::from).collect());
+        below.into_iter().chain(after)
+    });
+    let mut known = either.filter(|names: &Vec<String>| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        names.len() == width && is_head(&names) && !is_pair(&names)
+    });
+    known.next()
 }
 
 /// The words in the line right above the rows, if there are as many as columns: names that somebody else gave.

@@ -5,6 +5,7 @@ mod means;
 mod sorter;
 mod unused;
 
+use super::columns::Value;
 use super::facts::Facts;
 use super::format::{self, Format};
 use super::options::ReadOptions;
@@ -13,8 +14,9 @@ use super::role::Role;
 use super::sheet::Sheet;
 use super::unit::Unit;
 use super::units::Polarisation;
-use super::{find, repeats, rows};
+use super::{find, repeats, rows, wide};
 use crate::error::Error;
+use crate::number::shortest;
 use sorter::{Scan, Sorter};
 
 /// This format, which is what no other is.
@@ -31,11 +33,19 @@ pub const FORMAT: Format = Format {
 /// There is no header, no row, or a cell that is no number; a column that is not used could matter; a direction repeats at another value.
 pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let sheet = Sheet::find(text, options)?;
-    let columns = find::find(sheet.heads.clone(), options).map_err(|error| error.at_line(sheet.line))?;
+    let columns = wide::find(sheet.heads.clone(), options).map_err(|error| error.at_line(sheet.line))?;
     let theta_i = match columns.theta_i {
         Some(_) => None,
         None => theta_i_of_remarks(text, sheet.first_line, options)?,
     };
+    if let (Some(degrees), true) = (theta_i, columns.values.iter().any(Value::gives_theta_i)) {
+        return Err(Error::new(format!(
+            "the columns give angles of incidence, and a remark says theta_i is {} degrees",
+            shortest(degrees)
+        ))
+        .at_line(sheet.line)
+        .help("remove the remark; if the columns are of wavelengths, say so with --wavelength-unit um"));
+    }
     let mut sorter = Sorter::new(&columns, &sheet.facts, theta_i, options);
     sheet.for_each(|line, cells| sorter.row(line, cells))?;
     if sorter.scans.is_empty() {

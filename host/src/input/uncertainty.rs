@@ -92,6 +92,11 @@ pub fn assign(
     Ok(used)
 }
 
+/// What an uncertainty or a weight of this name may be of, as plain names; of nothing in particular the empty one.
+pub fn of(head: &Head) -> impl Iterator<Item = String> + '_ {
+    readings(head).map(|named| named.of)
+}
+
 /// The ways in which a name can be read as an uncertainty.
 fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
     let whole = head.plain.as_str();

@@ -50,6 +50,7 @@ class Reading(TypedDict, total=False):
     """How files are read: what the program's `brdfit inspect --help` lists under the same names."""
 
     input_format: str
+    sheet: str | Iterable[str]
     column: str | Iterable[str]
     quantity: str
     angles: Literal["deg", "rad"]

@@ -43,7 +43,8 @@ fn is(text: &str) -> bool {
         }
     });
     // With one row alone, what is missing is said by the reader.
-    matches!(lengths[..], [head] if head > 2) || matches!(lengths[..], [head, row] if head == row || head > 3)
+    matches!(lengths[..], [head] if head > 2)
+        || matches!(lengths[..], [head, row] if head == row || head > 3 && row > 0)
 }
 
 /// The angle in a cell, degrees: `20`, `22,5`, `20°`, `20 deg`, `AOI = 20`.

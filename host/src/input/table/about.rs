@@ -3,6 +3,7 @@
 use crate::input::about::{About, ThetaI, Used};
 use crate::input::columns::{Azimuth, Columns, Value, WeightKind};
 use crate::input::kind::Kind;
+use crate::number::shortest;
 
 /// What is known of the columns of these values before the rows.
 ///
@@ -11,7 +12,7 @@ pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool)
     let mut used: Vec<(usize, String)> = Vec::new();
     let mut add = |column: Option<usize>, holds: &str| used.extend(column.map(|column| (column, holds.to_string())));
     add(columns.theta_i, "theta_i");
-    add(Some(columns.theta_s), "theta_s");
+    add(columns.theta_s, "theta_s");
     match columns.azimuth {
         None => {}
         Some(Azimuth::Difference(column)) => add(Some(column), "delta_phi"),
@@ -32,28 +33,9 @@ pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool)
         .splits
         .iter()
         .for_each(|&column| add(Some(column), "name of the scan"));
-    let value_is = if value.divisor == 100.0 { "in percent" } else { "" };
-    add(
-        Some(value.column),
-        format!("{} {value_is}", value.quantity.title()).trim(),
-    );
-    if let Some((column, kind)) = value.weight {
-        let times = |coverage: f64| {
-            if coverage == 1.0 {
-                String::new()
-            } else {
-                format!(" times {coverage}")
-            }
-        };
-        let holds = match kind {
-            WeightKind::Sigma(coverage) => format!("standard deviation{}", times(coverage)),
-            WeightKind::RelativeSigma(coverage) => format!("relative standard deviation{}", times(coverage)),
-            WeightKind::PercentSigma(coverage) => {
-                format!("standard deviation{} in percent of the value", times(coverage))
-            }
-            WeightKind::Factor => "weight".to_string(),
-        };
-        add(Some(column), &holds);
+    for value in columns.values.iter().filter(|other| other.scan == value.scan) {
+        used.push((value.column, held(value)));
+        used.extend(value.weight.map(|(column, kind)| (column, held_beside(kind))));
     }
     used.sort_by_key(|(column, _)| *column);
     let used = used.into_iter().map(|(column, holds)| Used {
@@ -71,16 +53,47 @@ pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool)
         unused: columns.unused.iter().map(|&(column, _)| title(column)).collect(),
         theta_i: match columns.theta_i {
             Some(_) => ThetaI::Column,
+            None if value.gives_theta_i() => ThetaI::Column,
             None => ThetaI::Missing {
                 remark: theta_i,
                 names: columns.heads.iter().map(|head| head.text.clone()).collect(),
             },
         },
         one_angle: false,
+        angle_of_heads: value.angle.map(|(polar, _)| polar),
         settled,
         angles_named: columns.angles_named,
         divisor: value.divisor,
         sigma_ln: None,
         ..About::default()
+    }
+}
+
+/// What a column of values holds, for people.
+fn held(value: &Value) -> String {
+    let title = value.quantity.title();
+    let percent = if value.divisor == 100.0 { " in percent" } else { "" };
+    let at = value.angle.map_or(String::new(), |(polar, angle)| {
+        format!(" at {} = {}", polar.name(), shortest(angle))
+    });
+    format!("{title}{percent}{at}")
+}
+
+/// What a column of this kind holds, for people.
+fn held_beside(kind: WeightKind) -> String {
+    let times = |coverage: f64| {
+        if coverage == 1.0 {
+            String::new()
+        } else {
+            format!(" times {coverage}")
+        }
+    };
+    match kind {
+        WeightKind::Sigma(coverage) => format!("standard deviation{}", times(coverage)),
+        WeightKind::RelativeSigma(coverage) => format!("relative standard deviation{}", times(coverage)),
+        WeightKind::PercentSigma(coverage) => {
+            format!("standard deviation{} in percent of the value", times(coverage))
+        }
+        WeightKind::Factor => "weight".to_string(),
     }
 }

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use super::about;
 use super::unused::Seen;
 use crate::error::{Error, shown};
-use crate::input::columns::{Azimuth, Columns, Value, WeightKind};
+use crate::input::columns::{Azimuth, Columns, Polar, Value, WeightKind};
 use crate::input::facts::Facts;
+use crate::input::head::Head;
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::role::Role;
@@ -34,7 +35,9 @@ pub struct Sorter<'a> {
     /// What a remark says, degrees.
     theta_i: Option<f64>,
     decimal: Decimal,
-    /// Each group of rows has one scan a column of values.
+    /// Each group of rows has so many scans: one a column of values, or of several at one angle each.
+    width: usize,
+    /// The scans, group by group.
     pub scans: Vec<Scan>,
     /// Groups by what stands in the rows, and by what that means.
     by_text: HashMap<String, usize>,
@@ -57,6 +60,7 @@ impl<'a> Sorter<'a> {
             facts,
             theta_i,
             decimal: Decimal::Unknown,
+            width: columns.values.iter().map(|value| value.scan + 1).max().unwrap_or(0),
             scans: Vec::new(),
             by_text: HashMap::new(),
             by_name: HashMap::new(),
@@ -86,7 +90,10 @@ impl<'a> Sorter<'a> {
                 Some(column) => self.number(cells, column)?,
                 None => f64::NAN,
             },
-            theta_s: self.number(cells, columns.theta_s)?,
+            theta_s: match columns.theta_s {
+                Some(column) => self.number(cells, column)?,
+                None => f64::NAN,
+            },
             delta_phi: match columns.azimuth {
                 None => None,
                 Some(Azimuth::Difference(column)) => Some(self.number(cells, column)?),
@@ -94,16 +101,17 @@ impl<'a> Sorter<'a> {
                 Some(Azimuth::Of(phi_s, Some(phi_i))) => Some(self.number(cells, phi_s)? - self.number(cells, phi_i)?),
             },
         };
-        for (place, value) in columns.values.iter().enumerate() {
+        for value in &columns.values {
+            let of_head = |polar: Polar| value.angle.filter(|(of, _)| *of == polar).map(|(_, angle)| angle);
             let row = Row {
-                theta_i: angles.theta_i,
-                theta_s: angles.theta_s,
+                theta_i: of_head(Polar::Incidence).unwrap_or(angles.theta_i),
+                theta_s: of_head(Polar::Scattering).unwrap_or(angles.theta_s),
                 delta_phi: angles.delta_phi,
                 value: self.number(cells, value.column)?,
                 weight: self.weight(cells, value)?,
                 line,
             };
-            let raw = &mut self.scans[group * columns.values.len() + place].raw;
+            let raw = &mut self.scans[group * self.width + value.scan].raw;
             raw.about.sigma_ln = sigma_ln;
             raw.rows.push(row);
         }
@@ -189,8 +197,9 @@ impl<'a> Sorter<'a> {
         let groups = self.by_name.len();
         let group = *self.by_name.entry(name).or_insert(groups);
         if group == groups {
+            let first = (0..self.width).filter_map(|scan| columns.values.iter().find(|value| value.scan == scan));
             let of_value = |value: &Value| self.scan(value, &splits, &wavelength, &polarisation);
-            let scans: Vec<Scan> = columns.values.iter().map(of_value).collect();
+            let scans: Vec<Scan> = first.map(of_value).collect();
             self.scans.extend(scans);
         }
         Ok(group)
@@ -230,19 +239,23 @@ impl<'a> Sorter<'a> {
         let columns = self.columns;
         let place = |column: usize| column as u64 + 1;
         let head = &columns.heads[value.column];
-        let of_channel = channel::polarisation(head).map(str::to_string);
+        let of_name = value.name.as_deref().map(Head::new);
+        let of_channel = of_name.as_ref().and_then(channel::polarisation);
+        let of_channel = of_channel.or_else(|| channel::polarisation(head)).map(str::to_string);
+        // Of an angle each there are several columns.
+        let is_only = value.angle.is_none();
         let names = value.name.iter().chain(wavelength).chain(polarisation);
         Scan {
             raw: RawScan {
                 quantity: value.quantity,
                 places: Places {
                     theta_i: columns.theta_i.map(place),
-                    theta_s: Some(place(columns.theta_s)),
+                    theta_s: columns.theta_s.map(place),
                     phi: columns.azimuth.map(|azimuth| match azimuth {
                         Azimuth::Difference(column) | Azimuth::Of(column, _) => place(column),
                     }),
-                    value: Some(place(value.column)),
-                    weight: value.weight.map(|(column, _)| place(column)),
+                    value: is_only.then(|| place(value.column)),
+                    weight: value.weight.filter(|_| is_only).map(|(column, _)| place(column)),
                 },
                 about: about::of(columns, value, self.theta_i, self.facts.own),
                 ..RawScan::new(names.cloned().collect(), columns.angles)

@@ -202,8 +202,10 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
     }
     let mut scans = raw::select(scans, &options.column)?;
     cut::suspect(format, bytes, &mut scans);
+    // Once, for a spectral file may have thousands of scans.
+    let source = Source::new(file, bytes);
     for scan in &mut scans {
-        scan.about.sources.push(Source::new(file, bytes));
+        scan.about.sources.push(source.clone());
         scan.about.asked = options.clone();
         incidence::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {

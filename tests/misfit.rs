@@ -9,6 +9,7 @@ use brdfit::analysis::misfit::mixture::matched;
 use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
 use brdfit::engine::{self, FitOptions, Material};
+use brdfit::input::{ReadOptions, parse};
 use brdfit_core::brdf::{DIFFUSE, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::scan::{left_out, scan, shared};
@@ -298,4 +299,67 @@ fn runs_of_one_paint_agree_within_their_errors() {
         assert!(apart < expanded(a_known).hypot(expanded(b_known)), "{place}: {apart}");
         assert!(apart > expanded(a_plain).hypot(expanded(b_plain)), "{place}: {apart}");
     }
+}
+
+/// A misfit over tens of degrees says little of a narrow lobe, even where n ends on its bound: made with m = 0.02.
+#[test]
+fn a_wandering_misfit_leaves_a_narrow_lobe_known() {
+    let path = shared("cases/fit/f08_robust_drops_lobe.csv");
+    if !path.exists() {
+        return left_out("a scan whose misfit wanders", &path);
+    }
+    let bytes = std::fs::read(&path).unwrap();
+    let samples = parse("f08", &bytes, &ReadOptions::default()).unwrap().remove(0).samples;
+    let options = FitOptions {
+        robust: true,
+        ..FitOptions::default()
+    };
+    let outcome = engine::fit(&samples, &options).unwrap();
+    let kept = engine::robust::kept(&samples, &outcome);
+    let known = uncertainty(&kept, &outcome);
+    let [rho_d, m] = [0, 3].map(|place| (outcome.params[place], known.stderr[place]));
+    println!("rho_d {rho_d:?}, m {m:?}, {:?}", known.misfit);
+    assert!(
+        (m.0 - 0.02).abs() < coverage_factor(&known) * m.1 && m.1 < 0.001,
+        "{m:?}"
+    );
+    // What is Lambert's is as uncertain as the misfit makes it.
+    assert!(rho_d.1 > 20.0 * outcome.uncertainty.stderr[0], "{rho_d:?}");
+}
+
+/// Scans of a narrow lobe whose ln f has a wave of 5 %: m is known to a few percent, and its intervals hold.
+#[test]
+fn a_lobe_under_a_wave_is_held_by_its_intervals() {
+    let truth = Material::paper([0.2, 0.5, 0.0, 0.05, 1.3, 0.0]);
+    let (mut held, mut errors) = (0, Vec::new());
+    for copy in 0..30 {
+        let mut noise = Noise::new(8, copy);
+        let (phase, size) = (6.3 * noise.unit(), 0.07 * noise.normal());
+        let samples: Vec<Sample<f64>> = (-80..=80)
+            .map(|degrees| {
+                let sample = Sample::in_plane(30f64.to_radians(), f64::from(degrees).to_radians(), 1.0);
+                let wave = size * (4.0 * sample.theta_s + phase).sin() + 0.01 * noise.normal();
+                Sample {
+                    brdf: (truth.ln_f(&sample).unwrap() + wave).exp(),
+                    ..sample
+                }
+            })
+            .collect();
+        let options = FitOptions {
+            terms: DIFFUSE | SURFACE,
+            ..FitOptions::default()
+        };
+        let outcome = engine::fit(&samples, &options).unwrap();
+        let known = uncertainty(&samples, &outcome);
+        let error = (outcome.params[3] - 0.05).abs();
+        held += u64::from(error <= coverage_factor(&known) * known.stderr[3]);
+        errors.push(known.stderr[3] / 0.05);
+    }
+    errors.sort_by(f64::total_cmp);
+    println!(
+        "{held} of 30 held, errors of m from {:.4} to {:.4}, median {:.4}",
+        errors[0], errors[29], errors[15]
+    );
+    assert!(held >= 26, "{held}");
+    assert!(errors[15] < 0.1, "{errors:?}");
 }

@@ -211,6 +211,19 @@ fn measured_runs_agree_within_the_budget() {
             assert!(away <= budget["expanded"].as_f64().unwrap(), "{quantity}");
         }
     }
+    // Where they are apart by more than both tell of themselves, it is said of which.
+    let at_70 = found["quantities"].as_array().unwrap().iter();
+    let at_70 = at_70.filter(|one| one["name"] == "reflectance" && one["theta_i_deg"] == 70.0);
+    for quantity in at_70.clone() {
+        assert_eq!(quantity["runs_that_disagree"], serde_json::json!([1, 2]));
+    }
+    assert_eq!(at_70.count(), 1);
+    let text = brdfit(&["joint", "--repeats", &files[0], &files[1]], b"").output;
+    let line = text.lines().find(|line| line.contains("do not agree with each other"));
+    assert!(
+        line.is_some_and(|line| line.contains("reflectance at 70 deg")),
+        "{text}"
+    );
     // rho_d is told by both, and differs.
     let rho_d = &found["quantities"][0];
     let (between, within) = (&rho_d["budget"]["between"], &rho_d["budget"]["within"]);

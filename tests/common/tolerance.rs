@@ -315,3 +315,10 @@ pub const SCALED_F64: Tolerance = Tolerance(1e-9);
 pub const SCALED_F32: Tolerance = Tolerance(2e-5);
 /// The same of what `fit` tells of a scan with parameters that are determined only together; measured 1.8e-6.
 pub const SCALED_OUTPUT: Tolerance = Tolerance(3e-6);
+
+// Reflectance in every corner.
+
+/// The oracle with two and with three parts a halving, relative; measured 1.6e-7.
+pub const REFLECTANCE_ORACLE: Tolerance = Tolerance(3e-7);
+/// The reflectance of one lobe against it, m from 1e-5 to 10, at 0 to 89.5 degrees.
+pub const REFLECTANCE_CORNERS: Tolerance = Tolerance(4e-7);

@@ -5,6 +5,7 @@
 //! A sum of weighted autocovariances (Newey and West 1987) needs many correlation lengths in a scan, and a scan has three to ten: the likelihood does not lose what the fit has taken out of the residuals.
 //! The covariance is the mean over all lengths and parts, by their likelihood; how much it varies among them widens the tails ([`mixture`]), as fewer degrees of freedom do.
 
+mod along;
 pub mod lines;
 pub mod mixture;
 pub mod process;
@@ -18,6 +19,7 @@ use super::profile::calibrate::threshold;
 use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
+use along::Along;
 use process::{Node, Residuals};
 
 /// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
@@ -61,7 +63,8 @@ fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Optio
     }
     all.keep(&seen);
     let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
-    Some(with(known, &inside, &seen, &nodes))
+    let seen: Vec<usize> = (0..inside.len()).filter(|&k| seen[k]).map(|k| inside[k]).collect();
+    Some(with(samples, view, known, &seen, &nodes))
 }
 
 /// Residuals that a thread takes at once.
@@ -111,8 +114,7 @@ fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64)
 }
 
 /// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.
-fn with(known: &Uncertainty, inside: &[usize], seen: &[bool], nodes: &[Node]) -> Uncertainty {
-    let seen: Vec<usize> = (0..inside.len()).filter(|&k| seen[k]).map(|k| inside[k]).collect();
+fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize], nodes: &[Node]) -> Uncertainty {
     let count = seen.len();
     let mean = |of: &dyn Fn(&Node) -> f64| nodes.iter().map(|node| node.weight * of(node)).sum::<f64>();
     let trace = |node: &Node| (0..count).map(|k| node.covariance[k][k]).sum::<f64>();
@@ -134,18 +136,28 @@ fn with(known: &Uncertainty, inside: &[usize], seen: &[bool], nodes: &[Node]) ->
             (i..count).map(|j| root[j][i] * known.axes[seen[j]][k]).sum()
         });
     }
-    // What is on a bound may be inside it by so much more.
+    let along = Along {
+        samples,
+        view,
+        known,
+        nodes,
+        tails: student.variance,
+    };
+    // Where nothing is told of a displacement of its own, it has the factor of all together.
     let whole = Real::sqrt(size * student.variance / count as f64).max(1.0);
     for (axis, place) in axes.iter_mut().zip(&known.places) {
         if matches!(place, Some(Place::Lower | Place::Upper)) {
-            axis.iter_mut().for_each(|part| *part *= whole);
+            let own = along.bound(axis);
+            *axis = own.unwrap_or_else(|| axis.iter().map(|part| part * whole).collect());
         }
     }
     let mut corrected = known.clone().with_axes(axes);
     let lift = |values: &Values| values.iter().map(|x| x * whole).collect::<Values>();
-    corrected.axes_lifted = known.axes_lifted.iter().map(lift).collect();
-    corrected.stderr_lifted = lift(&known.stderr_lifted);
-    let factors = inside.iter().map(|&k| corrected.stderr[k] / known.stderr[k]);
+    (corrected.axes_lifted, corrected.stderr_lifted) = along.lifted().unwrap_or_else(|| {
+        let axes = known.axes_lifted.iter().map(lift).collect();
+        (axes, lift(&known.stderr_lifted))
+    });
+    let factors = known.inside().map(|k| corrected.stderr[k] / known.stderr[k]);
     let factors = factors.filter(|factor| factor.is_finite());
     let factor = factors.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), factor| {
         (a.min(factor), b.max(factor))

@@ -64,6 +64,8 @@ pub struct Node {
     pub process: Process,
     /// Its share of the likelihood of all.
     pub weight: f64,
+    /// Its variance, in units of that of the residuals.
+    pub variance: f64,
     /// Covariance of the fit, in the coordinates of the rows: 1 for independent residuals.
     pub covariance: Vec<Vec<f64>>,
 }
@@ -132,6 +134,7 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     let node = |one: &&(Process, (f64, f64))| Node {
         process: one.0,
         weight: share(one) / total,
+        variance: one.1.1,
         covariance: common.covariance(all, one.0, one.1.1),
     };
     Some(kept.iter().map(node).collect())

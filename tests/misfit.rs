@@ -4,7 +4,7 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
-use brdfit::analysis::bootstrap::Noise;
+use brdfit::analysis::bootstrap::{Noise, bootstrap};
 use brdfit::analysis::misfit::mixture::matched;
 use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
@@ -277,6 +277,29 @@ fn independent_errors_stay_as_they_are() {
     assert!(correlated <= 12, "{correlated}");
     assert!((108..=119).contains(&held), "{held}");
     assert!(held >= plain.iter().sum());
+}
+
+/// Copies of a scan whose residuals are correlated have such errors too, and spread as far as its errors say.
+#[test]
+fn copies_of_a_correlated_scan_are_correlated() {
+    let spread = |copies: &[engine::Values], place: usize| {
+        let mean = copies.iter().map(|values| values[place]).sum::<f64>() / copies.len() as f64;
+        let squares = copies.iter().map(|values| (values[place] - mean).powi(2));
+        (squares.sum::<f64>() / (copies.len() - 1) as f64).sqrt()
+    };
+    let (mut of_correlated, mut of_independent) = (0.0, 0.0);
+    for copy in 0..6 {
+        let (samples, options) = measured(8.0, copy);
+        let independent = engine::fit(&samples, &options).unwrap();
+        let mut outcome = independent.clone();
+        outcome.uncertainty = uncertainty(&samples, &outcome);
+        let stderr = outcome.uncertainty.stderr[0];
+        of_correlated += spread(&bootstrap(&samples, &options, &outcome, 60).unwrap(), 0) / stderr / 6.0;
+        of_independent += spread(&bootstrap(&samples, &options, &independent, 60).unwrap(), 0) / stderr / 6.0;
+    }
+    println!("spread of copies over the standard error: {of_correlated:.3}, of independent ones {of_independent:.3}");
+    assert!((0.75..1.25).contains(&of_correlated), "{of_correlated}");
+    assert!(of_independent < 0.6, "{of_independent}");
 }
 
 /// Two runs of one paint on one instrument: apart by many of the errors of independent residuals, and no more than by their own.

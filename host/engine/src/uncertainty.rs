@@ -21,6 +21,8 @@ pub struct Misfit {
     pub length: f64,
     /// The part of their variance that is correlated, 0 to 1; the rest is noise of each sample.
     pub part: f64,
+    /// Their variance before the fit took up a part of them, over that of the residuals.
+    pub variance: f64,
     /// Standard errors over those of independent residuals: the least and the largest of a parameter inside its bounds.
     pub factor: (f64, f64),
 }

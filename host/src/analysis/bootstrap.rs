@@ -6,6 +6,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+use super::misfit::lines;
+use crate::engine::uncertainty::Misfit;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View};
 
 /// Random numbers of copy `copy` of `seed`: a function of both alone, whatever thread draws them.
@@ -34,22 +36,52 @@ impl Noise {
 
 /// What is seen at the angles of `samples`, with normal errors of ln f of standard deviation `scale` over the sample's weight.
 pub fn copy(samples: &[Sample<f64>], view: impl Into<View>, scale: f64, noise: &mut Noise) -> Vec<Sample<f64>> {
-    let view = view.into();
+    let errors = samples.iter().map(|_| noise.normal()).collect();
+    with_errors(samples, &view.into(), scale, errors)
+}
+
+/// The same with errors that are correlated along each line of angles as the residuals of a fit are.
+///
+/// Different lines have nothing in common here, and the correlation is exponential at its mean length.
+pub fn correlated_copy(
+    samples: &[Sample<f64>],
+    view: impl Into<View>,
+    scale: f64,
+    misfit: &Misfit,
+    noise: &mut Noise,
+) -> Vec<Sample<f64>> {
+    let mut errors: Vec<f64> = samples.iter().map(|_| noise.normal()).collect();
+    let [wander, own] = [misfit.part, 1.0 - misfit.part].map(|part| Real::sqrt(misfit.variance * part));
+    for line in lines::of(samples) {
+        let mut state = noise.normal();
+        let mut before = None;
+        for (place, angle) in line {
+            let kept = before.map_or(1.0, |before: f64| Real::portable_exp((before - angle) / misfit.length));
+            state = kept * state + Real::sqrt(1.0 - kept * kept) * noise.normal();
+            errors[place] = wander * state + own * errors[place];
+            before = Some(angle);
+        }
+    }
+    with_errors(samples, &view.into(), scale, errors)
+}
+
+/// What is seen with these errors, in units of `scale` over the sample's weight.
+fn with_errors(samples: &[Sample<f64>], view: &View, scale: f64, errors: Vec<f64>) -> Vec<Sample<f64>> {
     // The exponential is a normal number within this.
     const LARGEST_LN: f64 = 700.0;
-    let one = |sample: &Sample<f64>| {
+    let one = |(sample, error): (&Sample<f64>, f64)| {
         let ln_f = view.ln_f(sample).unwrap_or(0.0);
         let weight = if sample.weight == 0.0 { 1.0 } else { sample.weight };
-        let ln_f = ln_f + scale / weight * noise.normal();
+        let ln_f = ln_f + scale / weight * error;
         Sample {
             brdf: Real::portable_exp(ln_f.clamp(-LARGEST_LN, LARGEST_LN)),
             ..*sample
         }
     };
-    samples.iter().map(one).collect()
+    samples.iter().zip(errors).map(one).collect()
 }
 
-/// The parameters of `count` copies, each searched anew and from those of the scan, in order of the copies; the threads of the current rayon pool share them, and change no bit.
+/// The parameters of `count` copies, whose errors are correlated where `outcome` says that residuals are, each searched anew and from those of the scan, in order of the copies; the threads of the current rayon pool share them, and change no bit.
 ///
 /// # Errors
 /// [`FitError`].
@@ -61,7 +93,11 @@ pub fn bootstrap(
 ) -> Result<Vec<Values>, FitError> {
     let one = |k: u32| {
         let mut noise = Noise::new(options.seed, u64::from(k));
-        let copy = copy(samples, outcome.view(), outcome.uncertainty.scale, &mut noise);
+        let (view, scale) = (outcome.view(), outcome.uncertainty.scale);
+        let copy = match &outcome.uncertainty.misfit {
+            Some(misfit) => correlated_copy(samples, view, scale, misfit, &mut noise),
+            None => copy(samples, view, scale, &mut noise),
+        };
         let options = redrawn(options, &outcome.params, &mut noise);
         Ok(engine::fit_from(&copy, &options, &[outcome.params])?.params)
     };

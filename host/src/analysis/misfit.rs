@@ -166,6 +166,7 @@ fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize
     corrected.misfit = Some(Misfit {
         length: mean(&|node| node.process.length),
         part: mean(&|node| node.process.part),
+        variance: mean(&|node| node.variance),
         factor,
     });
     corrected

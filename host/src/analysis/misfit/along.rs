@@ -6,8 +6,8 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
 
-use super::residuals;
 use super::process::{Common, Node, cholesky};
+use super::residuals;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Values, View};
 

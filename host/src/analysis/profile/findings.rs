@@ -74,7 +74,9 @@ pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result
             Err(error) => return Ok(Err(error)),
         };
         let found = profiles(samples, &plain, outcome, &parameters, asked.calibrate)?;
-        let copies = bootstrap(samples, &plain, &found.outcome, asked.bootstrap)?;
+        let mut known = found.outcome.clone();
+        known.uncertainty = misfit::uncertainty(samples, &known);
+        let copies = bootstrap(samples, &plain, &known, asked.bootstrap)?;
         Ok(Ok((options, choice, found, copies)))
     };
     let (options, choice, found, copies) = found().map_err(|error| input::explain(measurement, error))??;

@@ -188,8 +188,14 @@ fn step(
             }
         }
         let tangent = tangent::bound(scene, cell, region, reach, &expansion.centre, &expansion.half, target);
-        region.bound = region.bound.max(tangent);
-        if tangent >= target {
+        region.bound = region.bound.max(tangent.bound);
+        if tangent.bound >= target {
+            return Step::Excluded;
+        }
+        if cut(region, &expansion, &tangent.lo, &tangent.hi) {
+            continue;
+        }
+        if region.is_empty() {
             return Step::Excluded;
         }
         if expansion.lost > HOPELESS * (target + expansion.cost) {
@@ -230,6 +236,12 @@ fn quadratic_step(scene: &Scene, region: &mut Region, expansion: &Expansion, tar
         return None;
     }
     let (lo, hi) = convex.narrowed(target);
+    let narrower = cut(region, expansion, &lo, &hi);
+    if region.is_empty() { None } else { Some(narrower) }
+}
+
+/// Takes away what of the cube about the centre of an expansion is not between `lo` and `hi`; returns whether that was much of it.
+fn cut(region: &mut Region, expansion: &Expansion, lo: &[f64; D], hi: &[f64; D]) -> bool {
     let mut narrower = false;
     for i in 0..D {
         let (c, h) = (expansion.centre[i], expansion.half[i]);
@@ -245,7 +257,7 @@ fn quadratic_step(scene: &Scene, region: &mut Region, expansion: &Expansion, tar
             narrower |= region.width(i) < 0.75 * old;
         }
     }
-    if region.is_empty() { None } else { Some(narrower) }
+    narrower
 }
 
 /// The centre, with minus infinity for parts that are not bright.

@@ -2,6 +2,7 @@
 //!
 //! ln f is a log-sum-exp of its parts' exponents, so it lies above its tangent `T` at the centre, and at most R above it, where R is the largest of a convex function over the differences of the exponents, at a corner of their ranges.
 //! Each residual is between `r + J d - below` and `r + J d + above`; the sum of the squares of the distances of 0 from these ranges is convex in d, and its tangent at any point is a bound.
+//! So is it for a part of the box at one of its ends: where that bound passes the target, the part is cut away.
 
 use brdfit_core::real::Real;
 
@@ -37,7 +38,14 @@ struct Sum {
 /// Steps towards the least value at most.
 const STEPS: usize = 6;
 
-/// A bound of the cost in a box with at least one bright part, whose middle and half widths are given; it stops where that passes `target`.
+/// What is left of a box, as the cube: no cost in it is below `bound`, and none in the rest of the cube below the target.
+pub(crate) struct Left {
+    pub bound: f64,
+    pub lo: [f64; D],
+    pub hi: [f64; D],
+}
+
+/// A bound of the cost in a box with at least one bright part, whose middle and half widths are given, and what of it has costs below `target`; nothing else is done where the bound passes that.
 pub(crate) fn bound(
     scene: &Scene,
     cell: &Cell,
@@ -46,25 +54,80 @@ pub(crate) fn bound(
     middle: &[f64; D],
     half: &[f64; D],
     target: f64,
-) -> f64 {
+) -> Left {
     let parts: [Part; PARTS] = std::array::from_fn(|k| region.part(k));
     let line = |(row, reach)| line(cell, row, reach, &parts, middle, half);
     let lines: Vec<Line> = scene.rows.iter().zip(reach).map(line).collect();
-    let mut z = [0.0; D];
+    let mut left = Left {
+        bound: 0.0,
+        lo: [-1.0; D],
+        hi: [1.0; D],
+    };
+    let (bound, model, z) = least(&lines, [0.0; D], &left.lo, &left.hi, target, STEPS);
+    left.bound = bound;
+    if bound >= target {
+        return left;
+    }
+    for i in 0..D {
+        if !(half[i] > 0.0 && model.hessian[i][i] > 0.0) {
+            continue;
+        }
+        for upper in [false, true] {
+            for part in SLABS {
+                let (mut lo, mut hi) = (left.lo, left.hi);
+                let width = hi[i] - lo[i];
+                if upper {
+                    lo[i] = hi[i] - part * width;
+                } else {
+                    hi[i] = lo[i] + part * width;
+                }
+                let within = std::array::from_fn(|k| z[k].max(lo[k]).min(hi[k]));
+                let start = model.descend(within, lo, hi);
+                // Only what the parabola at the least value promises is worth its passes.
+                if model.at(&start) < target {
+                    continue;
+                }
+                if least(&lines, start, &lo, &hi, target, SLAB_STEPS).0 >= target {
+                    if upper {
+                        left.hi[i] = lo[i];
+                    } else {
+                        left.lo[i] = hi[i];
+                    }
+                    break;
+                }
+            }
+        }
+    }
+    left
+}
+
+/// Parts of a box at its ends that are tried, the larger first.
+const SLABS: [f64; 2] = [0.5, 0.2];
+
+/// Steps within such a part.
+const SLAB_STEPS: usize = 3;
+
+/// A bound of the sum between `lo` and `hi` from Newton's steps that begin at `z`, the parabola at the last, and where that is; it stops where the bound passes `target`, or cannot.
+fn least(
+    lines: &[Line],
+    mut z: [f64; D],
+    lo: &[f64; D],
+    hi: &[f64; D],
+    target: f64,
+    steps: usize,
+) -> (f64, Quadratic, [f64; D]) {
     let mut best = 0.0f64;
-    for _ in 0..STEPS {
-        let sum = sum_at(&lines, &z);
+    let mut step = 0;
+    loop {
+        let sum = sum_at(lines, &z);
         // The tangent, which is below a convex function.
         let mut value = sum.value - (lines.len() as f64 + 64.0) * 8.0 * f64::EPSILON * sum.size;
         for i in 0..D {
             let slope = 2.0 * sum.gradient[i];
-            value += (slope * (-1.0 - z[i])).min(slope * (1.0 - z[i]));
+            value += (slope * (lo[i] - z[i])).min(slope * (hi[i] - z[i]));
         }
         best = best.max(value);
-        if best >= target || sum.value < target {
-            break;
-        }
-        // Newton's step within the cube.
+        // Newton's step within the box.
         let mut quadratic = Quadratic {
             constant: sum.value,
             gradient: sum.gradient,
@@ -73,12 +136,17 @@ pub(crate) fn bound(
         for i in 0..D {
             quadratic.hessian[i][i] += 1e-9 * (sum.hessian[i][i] + 1e-9);
             for k in 0..D {
+                quadratic.constant +=
+                    (sum.hessian[i][k] * z[k] - if i == k { 2.0 * sum.gradient[i] } else { 0.0 }) * z[i];
                 quadratic.gradient[i] -= sum.hessian[i][k] * z[k];
             }
         }
-        z = quadratic.descend(z, [-1.0; D], [1.0; D]);
+        step += 1;
+        if best >= target || sum.value < target || step == steps {
+            return (best, quadratic, z);
+        }
+        z = quadratic.descend(z, *lo, *hi);
     }
-    best
 }
 
 fn sum_at(lines: &[Line], z: &[f64; D]) -> Sum {

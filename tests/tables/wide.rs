@@ -12,8 +12,11 @@ const ROWS: [(i32, [f64; 2]); 5] = [
     (60, [0.115, 0.2]),
 ];
 
+/// The name of a scan, and its samples.
+type Read = (String, Vec<[f64; 3]>);
+
 /// The samples of each scan in a table, as the program writes them: theta_i, theta_s and BRDF, sorted.
-fn read(name: &str, text: &str, more: &[&str]) -> Result<Vec<(String, Vec<[f64; 3]>)>, String> {
+fn read(name: &str, text: &str, more: &[&str]) -> Result<Vec<Read>, String> {
     let folder = folder();
     let path = folder.path().join(name);
     fs::write(&path, text).expect("a file");
@@ -24,7 +27,7 @@ fn read(name: &str, text: &str, more: &[&str]) -> Result<Vec<(String, Vec<[f64; 
         return Err(ran.errors);
     }
     let rows = ran.output.lines().filter(|line| !line.starts_with('#')).skip(1);
-    let mut scans: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
+    let mut scans: Vec<Read> = Vec::new();
     for row in rows {
         let cells: Vec<&str> = row.split(',').collect();
         let numbers: Vec<f64> = cells.iter().filter_map(|cell| cell.parse().ok()).collect();

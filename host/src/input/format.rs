@@ -35,8 +35,8 @@ pub enum Reader {
     Sheets {
         /// True if they begin as files of this format do.
         is: fn(&[u8]) -> bool,
-        /// The texts whose names or numbers are asked for, or all.
-        texts: fn(&[u8], &[String]) -> Result<Vec<NamedText>, Error>,
+        /// The texts that the options ask for by name or number, or all.
+        texts: fn(&[u8], &ReadOptions) -> Result<Vec<NamedText>, Error>,
     },
     /// From text, whatever its encoding was.
     Text {

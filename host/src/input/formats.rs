@@ -84,7 +84,7 @@ fn read(file: &[u8], options: &ReadOptions) -> Result<(Format, Vec<RawScan>), Er
         match format.reader {
             Reader::Bytes { is, read } if is_it(is) => return Ok((format, read(file, options)?)),
             Reader::Sheets { is, texts } if is_it(is) => {
-                return Ok((format, of_sheets(&texts(file, &options.sheet)?, options)?));
+                return Ok((format, of_sheets(&texts(file, options)?, options)?));
             }
             _ => {}
         }

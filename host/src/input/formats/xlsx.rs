@@ -4,6 +4,7 @@
 
 use crate::error::Error;
 use crate::input::format::{Format, NamedText, Reader};
+use crate::input::options::ReadOptions;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -19,29 +20,28 @@ fn is(file: &[u8]) -> bool {
 }
 
 #[cfg(not(feature = "xlsx"))]
-fn texts(_: &[u8], _: &[String]) -> Result<Vec<NamedText>, Error> {
+fn texts(_: &[u8], _: &ReadOptions) -> Result<Vec<NamedText>, Error> {
     Err(Error::new("this is an Excel workbook, which this build does not read")
         .help("save the sheet as CSV, or build with --features xlsx"))
 }
 
 /// The name and the text of the sheets that are asked for, or of each, that have any number.
 #[cfg(feature = "xlsx")]
-fn texts(file: &[u8], asked: &[String]) -> Result<Vec<NamedText>, Error> {
+fn texts(file: &[u8], options: &ReadOptions) -> Result<Vec<NamedText>, Error> {
     use calamine::{Reader as _, Xlsx};
 
     let fault = |what: String| Error::new(format!("as Excel workbook: {what}")).help("save the sheet as CSV");
     let mut workbook = Xlsx::new(std::io::Cursor::new(file)).map_err(|error| fault(error.to_string()))?;
     let all = workbook.sheet_names();
-    let wanted = wanted(&all, asked)?;
+    let wanted = wanted(&all, &options.sheet)?;
     let mut sheets = Vec::new();
     for name in wanted {
         let range = workbook
             .worksheet_range(&name)
             .map_err(|error| fault(error.to_string()))?;
-        let merged = match workbook.worksheet_merge_cells(&name) {
-            Some(merged) => merged.map_err(|error| fault(error.to_string()))?,
-            None => Vec::new(),
-        };
+        let merged = workbook
+            .merge_cells_by_sheet_name(&name)
+            .map_err(|error| fault(error.to_string()))?;
         if let Some(text) = text(&range, &merged) {
             sheets.push(NamedText { name, text });
         }
@@ -136,7 +136,6 @@ fn text(range: &calamine::Range<calamine::Data>, merged: &[calamine::Dimensions]
 #[cfg(all(test, feature = "xlsx"))]
 mod tests {
     use super::*;
-    use crate::input::ReadOptions;
     use crate::input::formats::scans;
     use crate::input::raw::RawScan;
 
@@ -169,7 +168,7 @@ mod tests {
         let mut file = data("workbook.xlsx");
         let end = file.len() - 100;
         file.truncate(end);
-        let error = texts(&file, &[]).unwrap_err();
+        let error = texts(&file, &ReadOptions::default()).unwrap_err();
         assert!(
             error.what.starts_with("as Excel workbook: ") && !error.what.contains('\n'),
             "{error}"

@@ -57,13 +57,13 @@ fn the_report_says_what_is_proved() {
 #[test]
 fn a_limit_of_boxes_leaves_what_is_proved_so_far() {
     let scan = noisy(3);
-    let limited = |more: &[&str]| json(&[&["certify", &scan, "--within", "1%", "--proof-boxes", "100"], more].concat());
+    let limited = |more: &[&str]| json(&[&["certify", &scan, "--within", "1%", "--proof-boxes", "70"], more].concat());
     let one = limited(&["--threads", "1"]);
     let eps = one["certificate"]["eps"].as_f64().unwrap();
     assert_eq!(one["certificate"]["complete"], false);
     assert!(eps > 0.01 && eps < 0.5, "{eps}");
     assert_eq!(one, limited(&["--threads", "3"]));
-    let text = succeed(&["certify", &scan, "--within", "1%", "--proof-boxes", "100"]);
+    let text = succeed(&["certify", &scan, "--within", "1%", "--proof-boxes", "70"]);
     assert!(text.contains("% so far, of 1.0 % asked for"), "{text}");
 }
 

@@ -259,7 +259,6 @@ fn joined(upper: &[&str], lower: &[&str]) -> Vec<String> {
 
 /// True if names go on in the line below them: it has no numbers where the angles are, and the row below has.
 fn goes_on(heads: &[Head], below: &[&str], row: &[&str]) -> bool {
-    let is_angle = |head: &Head| matches!(role::role(head), Role::ThetaI | Role::ThetaS | Role::Theta);
     let mut angles = (0..heads.len()).filter(|&k| is_angle(&heads[k])).peekable();
     below.len() == heads.len()
         && row.len() == heads.len()
@@ -268,14 +267,20 @@ fn goes_on(heads: &[Head], below: &[&str], row: &[&str]) -> bool {
         && angles.all(|k| !is_number(below[k]) && is_number(row[k]))
 }
 
-/// The names with the angles in the line right above them, if that has angles alone.
+/// The names with the angles in the line right above them, if that has angles alone, and none over a column of angles.
 fn over_names(above: Option<&Line>, number: u64, names: &[&str], delimiter: Option<u8>) -> Option<Vec<String>> {
     let line = above.filter(|line| line.number + 1 == number && !is_remark(line.text))?;
     let angles = rows::split(line.text, delimiter);
     let both = joined(&angles, names);
-    let fits = |(angle, both): (&&str, &String)| angle.is_empty() || wide::at(both).is_some();
+    let fits = |((angle, name), both): ((&&str, &&str), &String)| {
+        angle.is_empty() || !is_angle(&Head::new(name)) && wide::at(both).is_some()
+    };
     let all = angles.len() == names.len() && angles.iter().any(|angle| !angle.is_empty());
-    (all && angles.iter().zip(&both).all(fits)).then_some(both)
+    (all && angles.iter().zip(names).zip(&both).all(fits)).then_some(both)
+}
+
+fn is_angle(head: &Head) -> bool {
+    matches!(role::role(head), Role::ThetaI | Role::ThetaS | Role::Theta)
 }
 
 /// The delimiter in a line such as `sep=;`, which spreadsheets write and read.

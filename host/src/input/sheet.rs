@@ -60,7 +60,8 @@ impl<'a> Sheet<'a> {
             first.get_or_insert((line, start));
             let delimiter = given.or_else(|| rows::delimiter(line.text));
             let cells = rows::split(line.text, delimiter);
-            if is_head(&cells) && !is_pair(&cells) {
+            let below = |width| Sheet::has_names_below(text, start, delimiter, width);
+            if is_head(&cells) && !is_pair(&cells) && !(is_value_of_one(&cells) && below(None)) {
                 return Ok(Sheet::with_heads(text, start, line, &cells, delimiter, &above));
             }
             let found = match given {
@@ -68,8 +69,7 @@ impl<'a> Sheet<'a> {
                 None => delimiter_of_row(line.text),
             };
             // Angles may stand over the names, as in `,20,20,40,40` over `theta_s,R,G,R,G`.
-            let is_over_names =
-                || cells.first() == Some(&"") && Sheet::has_names_below(text, start, delimiter, cells.len());
+            let is_over_names = || cells.first() == Some(&"") && below(Some(cells.len()));
             if let Some(delimiter) = found
                 && !is_over_names()
             {
@@ -86,12 +86,12 @@ impl<'a> Sheet<'a> {
         Ok(Sheet::with_heads(text, start, line, &cells, delimiter, &[]))
     }
 
-    /// Is the line below the one that begins at `start` one of so many names?
-    fn has_names_below(text: &str, start: usize, delimiter: Option<u8>, width: usize) -> bool {
+    /// Is the line below the one that begins at `start` one of names, of so many if that is given?
+    fn has_names_below(text: &str, start: usize, delimiter: Option<u8>, width: Option<usize>) -> bool {
         let below = rows::lines(&text[start..]).nth(1);
         below.is_some_and(|(_, _, below)| {
             let cells = rows::split(below, delimiter);
-            cells.len() == width && is_head(&cells) && !is_pair(&cells)
+            width.is_none_or(|width| cells.len() == width) && is_head(&cells) && !is_pair(&cells)
         })
     }
 
@@ -257,12 +257,13 @@ fn joined(upper: &[&str], lower: &[&str]) -> Vec<String> {
     names
 }
 
-/// True if names go on in the line below them: it has no numbers where the angles are, and the row below has.
+/// True if names go on in the line below them: it is no line of names by itself, has no numbers where the angles are, and the row below has.
 fn goes_on(heads: &[Head], below: &[&str], row: &[&str]) -> bool {
     let mut angles = (0..heads.len()).filter(|&k| is_angle(&heads[k])).peekable();
     below.len() == heads.len()
         && row.len() == heads.len()
         && below.iter().any(|cell| !cell.is_empty())
+        && !is_head(below)
         && angles.peek().is_some()
         && angles.all(|k| !is_number(below[k]) && is_number(row[k]))
 }
@@ -336,6 +337,13 @@ fn is_pair(cells: &[&str]) -> bool {
     cells.first().is_some_and(has_key)
         || matches!((key, value, more), (Some(key), Some(value), None) if is_fact(key, value))
         || cells.len() > 2 && !cells.iter().any(|cell| is_table(&Head::new(cell)))
+}
+
+/// True of a name and a number behind it, as in `Detector angle,20 deg`: a column at an angle, or a fact.
+fn is_value_of_one(cells: &[&str]) -> bool {
+    let mut filled = cells.iter().filter(|cell| !cell.is_empty());
+    let (_, value, more) = (filled.next(), filled.next(), filled.next());
+    more.is_none() && value.is_some_and(|value| value.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// True of the name of what is the same in all rows, with a number or a word behind it.

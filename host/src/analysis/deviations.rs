@@ -35,7 +35,7 @@ pub enum Verdict {
 ///
 /// A deviation over the measured f is too small where noise made f large: such samples count too much, and f comes out high by 1.5 sigma^2 (sigma being relative).
 /// And ln f of a value with symmetric noise is low by sigma^2 / 2 on average, to second order ([`Deviation::of_ln`]).
-/// A scan without standard deviations stays as it is, unless its bias is to be corrected ([`unbiased`]); so does one that cannot be fitted.
+/// A scan without standard deviations stays as it is, unless its bias is to be corrected; so does one that cannot be fitted.
 pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
     if measurement.sigma_ln.is_none() && measurement.on_deviations.correct_ln_bias {
         return unbiased(measurement, wanted);

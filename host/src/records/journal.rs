@@ -6,9 +6,6 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
-
 use super::record::{self, Head, Record};
 use crate::error::Error;
 
@@ -157,11 +154,10 @@ impl Journal {
         let mut torn = false;
         while lines.read_until(b'\n', &mut line).map_err(fail)? > 0 {
             number += 1;
-            // The checksum tells that the rows are whole; they are read when they are wanted.
-            let record = record::of_line::<Outline>(&line);
+            let record = record::of_line::<Record>(&line);
             let place = record.as_ref().and_then(|record| self.places.get_mut(record.index));
             match (record.as_ref(), place) {
-                (Some(record), Some(place)) => *place = Some(record.place(end, &line)),
+                (Some(record), Some(place)) => *place = Some(Place::of(record, end, &line)),
                 _ => self.damaged.push(number),
             }
             torn = !line.ends_with(b"\n");
@@ -172,31 +168,6 @@ impl Journal {
         self.file.seek(SeekFrom::Start(end)).map_err(fail)?;
         // What a kill left of a last line ends here, so that the next record has a line of its own.
         if torn { self.append(b"\n") } else { Ok(()) }
-    }
-}
-
-/// A [`Record`] without its rows.
-#[derive(Deserialize)]
-struct Outline {
-    index: usize,
-    contents: u64,
-    scans: Vec<ScanOutline>,
-}
-
-/// A scan of it.
-#[derive(Deserialize)]
-struct ScanOutline {
-    line: Result<IgnoredAny, IgnoredAny>,
-}
-
-impl Outline {
-    fn place(&self, at: u64, line: &[u8]) -> Place {
-        Place {
-            at,
-            length: line.len() as u64,
-            contents: self.contents,
-            failed: self.scans.iter().any(|scan| scan.line.is_err()),
-        }
     }
 }
 

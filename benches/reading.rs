@@ -212,7 +212,7 @@ fn bird(rows: usize) -> Vec<u8> {
         column(
             "phi_r",
             "independent",
-            "degree",
+            "deg",
             list(&|k| if row(k).1 < 0.0 { 0.0 } else { 180.0 }),
         ),
         column("BRDF", "dependent", "sr^-1", list(&|k| row(k).2)),

@@ -1,5 +1,7 @@
 //! What a reader understood of a file, for those who check it.
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use super::columns::Polar;
@@ -90,7 +92,7 @@ pub enum ThetaI {
     Missing {
         /// What a remark says, degrees.
         remark: Option<f64>,
-        /// The names of the columns, for a message.
-        names: Vec<String>,
+        /// The names of the columns, for a message; the scans of a file share them.
+        names: Arc<[String]>,
     },
 }

@@ -98,7 +98,7 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     if let Axes::Azimuths { .. } = axes {
         scan.about.theta_i = ThetaI::Missing {
             remark: None,
-            names: Vec::new(),
+            names: [].into(),
         };
         scan.about
             .notes

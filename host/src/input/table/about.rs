@@ -1,14 +1,23 @@
 //! What the columns of a table are taken for.
 
+use std::sync::Arc;
+
 use crate::input::about::{About, ThetaI, Used};
 use crate::input::columns::{Azimuth, Columns, Value, WeightKind};
 use crate::input::kind::Kind;
 use crate::number::shortest;
 
-/// What is known of the columns of these values before the rows.
+/// What is known of the columns of these values before the rows; `together` are all columns of values of the same scan, and `names` those of all columns.
 ///
 /// `theta_i` is what a remark says of the angle of incidence, degrees; `settled` if the program wrote the table itself.
-pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool) -> About {
+pub fn of(
+    columns: &Columns,
+    value: &Value,
+    together: &[usize],
+    names: &Arc<[String]>,
+    theta_i: Option<f64>,
+    settled: bool,
+) -> About {
     let mut used: Vec<(usize, String)> = Vec::new();
     let mut add = |column: Option<usize>, holds: &str| used.extend(column.map(|column| (column, holds.to_string())));
     add(columns.theta_i, "theta_i");
@@ -33,7 +42,7 @@ pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool)
         .splits
         .iter()
         .for_each(|&column| add(Some(column), "name of the scan"));
-    for value in columns.values.iter().filter(|other| other.scan == value.scan) {
+    for value in together.iter().map(|&place| &columns.values[place]) {
         used.push((value.column, held(value)));
         used.extend(value.weight.map(|(column, kind)| (column, held_beside(kind))));
     }
@@ -56,7 +65,7 @@ pub fn of(columns: &Columns, value: &Value, theta_i: Option<f64>, settled: bool)
             None if value.gives_theta_i() => ThetaI::Column,
             None => ThetaI::Missing {
                 remark: theta_i,
-                names: columns.heads.iter().map(|head| head.text.clone()).collect(),
+                names: names.clone(),
             },
         },
         one_angle: false,

@@ -1,6 +1,7 @@
 //! Sorts the rows of a table into scans.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::about;
 use super::unused::Seen;
@@ -37,6 +38,10 @@ pub struct Sorter<'a> {
     decimal: Decimal,
     /// Each group of rows has so many scans: one a column of values, or of several at one angle each.
     width: usize,
+    /// The columns of values of each scan of a group.
+    together: Vec<Vec<usize>>,
+    /// The names of all columns.
+    names: Arc<[String]>,
     /// The scans, group by group.
     pub scans: Vec<Scan>,
     /// Groups by what stands in the rows, and by what that means.
@@ -54,13 +59,20 @@ impl<'a> Sorter<'a> {
     /// Has no row yet; `theta_i` is what a remark says, degrees.
     pub fn new(columns: &'a Columns, facts: &'a Facts, theta_i: Option<f64>, options: &'a ReadOptions) -> Self {
         let seen = |&(column, role): &(usize, Role)| Seen::new(column, &columns.heads[column].text, role);
+        let width = columns.values.iter().map(|value| value.scan + 1).max().unwrap_or(0);
+        let mut together = vec![Vec::new(); width];
+        for (place, value) in columns.values.iter().enumerate() {
+            together[value.scan].push(place);
+        }
         Sorter {
             columns,
             options,
             facts,
             theta_i,
             decimal: Decimal::Unknown,
-            width: columns.values.iter().map(|value| value.scan + 1).max().unwrap_or(0),
+            width,
+            together,
+            names: columns.heads.iter().map(|head| head.text.clone()).collect(),
             scans: Vec::new(),
             by_text: HashMap::new(),
             by_name: HashMap::new(),
@@ -197,8 +209,8 @@ impl<'a> Sorter<'a> {
         let groups = self.by_name.len();
         let group = *self.by_name.entry(name).or_insert(groups);
         if group == groups {
-            let first = (0..self.width).filter_map(|scan| columns.values.iter().find(|value| value.scan == scan));
-            let of_value = |value: &Value| self.scan(value, &splits, &wavelength, &polarisation);
+            let first = self.together.iter().filter_map(|places| places.first());
+            let of_value = |&place: &usize| self.scan(&columns.values[place], &splits, &wavelength, &polarisation);
             let scans: Vec<Scan> = first.map(of_value).collect();
             self.scans.extend(scans);
         }
@@ -257,7 +269,14 @@ impl<'a> Sorter<'a> {
                     value: is_only.then(|| place(value.column)),
                     weight: value.weight.filter(|_| is_only).map(|(column, _)| place(column)),
                 },
-                about: about::of(columns, value, self.theta_i, self.facts.own),
+                about: about::of(
+                    columns,
+                    value,
+                    &self.together[value.scan],
+                    &self.names,
+                    self.theta_i,
+                    self.facts.own,
+                ),
                 ..RawScan::new(names.cloned().collect(), columns.angles)
             },
             splits: splits.to_vec(),

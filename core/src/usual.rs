@@ -49,7 +49,7 @@ macro_rules! usual {
 
 /// The usual types in `f32`, with all terms of Eq. 14, under names without parameters.
 ///
-/// [`bounds`] is constant, so what firmware needs can stand in static memory:
+/// [`bounds`](single::bounds) is constant, so what firmware needs can stand in static memory:
 ///
 /// ```
 /// use brdfit_core::lm::Options;

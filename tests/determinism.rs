@@ -1,7 +1,9 @@
 //! The same bits with any number of threads, any vector instructions, and every time.
 
+use std::sync::atomic::AtomicBool;
+
 use brdfit::engine::simd::{FastEq14, Simd};
-use brdfit::engine::{FitOptions, Method, Outcome, Precision, blocks, fit};
+use brdfit::engine::{FitError, FitOptions, Method, Outcome, Precision, Until, blocks, descend, fit, joint};
 use brdfit_core::brdf::{ABSORBING, ALL, Brdf, DIFFUSE, Params, SURFACE};
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lm::Problem;
@@ -152,4 +154,43 @@ fn passes_over_a_large_scan_have_the_same_bits_on_any_number_of_threads() {
     let few = Scan::<f64, ALL, 6>::new(&blocks[..PART]);
     assert_eq!(few.cost(&start.x).to_bits(), few.inlined_cost(&start.x).to_bits());
     assert_ne!(whole.cost(&start.x).to_bits(), whole.inlined_cost(&start.x).to_bits());
+}
+
+#[test]
+fn a_search_that_is_not_wanted_ends() {
+    static OVER: AtomicBool = AtomicBool::new(true);
+    static GOES_ON: AtomicBool = AtomicBool::new(false);
+    let samples: Vec<Sample<f64>> = (0..40)
+        .map(|k| Sample::in_plane(0.7, 0.03 * f64::from(k), 0.1 + f64::from(k % 7)))
+        .collect();
+    for method in [Method::Default, Method::Paper] {
+        for robust in [false, true] {
+            let options = FitOptions {
+                method,
+                robust,
+                starts: Some(40),
+                ..FitOptions::default()
+            };
+            let until = |flag| FitOptions {
+                until: Until::set(flag),
+                ..options
+            };
+            assert_eq!(fit(&samples, &until(&OVER)), Err(FitError::Interrupted));
+            assert_eq!(fit(&samples, &until(&GOES_ON)), fit(&samples, &options));
+            let descend = |options: &FitOptions| descend(&samples, options, &[options.lower]);
+            assert_eq!(descend(&until(&OVER)), Err(FitError::Interrupted));
+            assert_eq!(descend(&until(&GOES_ON)), descend(&options));
+        }
+    }
+    let shared = [false, false, false, true, false, false];
+    let joint = |flag| {
+        let until = Until::set(flag);
+        let options = FitOptions {
+            until,
+            ..FitOptions::default()
+        };
+        joint::fit(&[&samples, &samples], &shared, &options)
+    };
+    assert_eq!(joint(&OVER), Err((2, FitError::Interrupted)));
+    assert!(joint(&GOES_ON).is_ok());
 }

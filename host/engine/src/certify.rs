@@ -41,8 +41,11 @@ pub use branch::Visit;
 pub use region::Region;
 pub use scene::Scene;
 
+use crate::error::FitError;
+use crate::least_squares::descend;
+use crate::options::FitOptions;
 use crate::scale::Scale;
-use crate::{FitError, FitOptions, Values, descend};
+use crate::values::Values;
 
 /// What is to be proved, and what may end it.
 #[derive(Clone, Copy)]
@@ -94,9 +97,9 @@ pub fn certify(
         return certify_ordinary(samples, options, best, claim);
     };
     let model = options.model;
-    let best = paper(&scale.taken(model, &best.to_array().into())).ok_or(FitError::NoProof(model.name))?;
+    let best = paper(&scale.taken(model.parameters, &best.to_array().into())).ok_or(FitError::NoProof(model.name))?;
     let proved = certify_ordinary(&scale.samples(samples), &scale.options(options)?, &best, claim)?;
-    let params = scale.given(model, &proved.params.to_array().into());
+    let params = scale.given(model.parameters, &proved.params.to_array().into());
     Ok(Certificate {
         params: paper(&params).unwrap_or(proved.params),
         ..proved

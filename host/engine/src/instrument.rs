@@ -1,21 +1,17 @@
 //! What is known of instrument and sample beside the samples, and takes part in the fit.
 //!
-//! Every part of it stands around the same search: priors and the limit on energy are further residuals (`beside`), the aperture is a scan of averages (`averaged`), and the offset is a search over shifted samples (`offset`).
+//! Every part of it stands around the same search: priors and the limit on energy are further residuals (`search/beside.rs`), the aperture is a scan of averages (`averaged.rs`), and the offset is a search over shifted samples (`search/offset.rs`).
 //! A fit without any of it is not touched.
 
 pub(crate) mod aperture;
-pub(crate) mod averaged;
-pub(crate) mod beside;
-pub(crate) mod calibration;
-pub(crate) mod offset;
-pub(crate) mod settled;
-pub(crate) mod setup;
+pub(crate) mod moved;
 mod view;
 
 use std::fmt;
 
-use crate::{MOST, Material, Values};
-pub use offset::{Offset, moved, signed};
+use crate::material::Material;
+use crate::values::{MOST, Values};
+pub use moved::{Offset, moved, signed};
 pub use view::View;
 
 /// What a parameter is known to be from another measurement: a normal distribution.

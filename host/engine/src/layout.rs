@@ -4,7 +4,9 @@ use brdfit_core::lm::Bounds;
 use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 
-use crate::{FitOptions, Model, Values};
+use crate::model::Model;
+use crate::options::FitOptions;
+use crate::values::Values;
 
 /// Where the `P` coordinates of what is compiled stand among the parameters of the model.
 pub(crate) struct Layout<'a, const P: usize> {

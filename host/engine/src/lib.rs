@@ -4,14 +4,22 @@
 //!
 //! [`FitOptions`] and samples go into [`fit`], an [`Outcome`] comes out; what it says does not depend on threads or instructions.
 
+mod averaged;
+mod bind;
 mod compiled;
+mod error;
+mod fit;
 mod layout;
+mod least_squares;
 mod material;
 mod model;
 mod options;
 mod outcome;
+mod passes;
 mod search;
+
 mod values;
+mod with_instrument;
 
 pub mod certify;
 pub mod clock;
@@ -25,12 +33,14 @@ pub mod trace;
 pub mod uncertainty;
 pub mod until;
 
-pub use compiled::{Both, Kernel, blocks, blocks_of};
+pub use error::FitError;
+pub use fit::{fit, fit_from};
 pub use instrument::{Instrument, Limit, Offset, Prior, View};
+pub use least_squares::descend;
 pub use material::Material;
 pub use model::Model;
 pub use options::{FitOptions, Method, Precision, TERM_SETS};
-pub use outcome::{FitError, Minimum, Outcome};
-pub use search::{descend, fit, fit_from};
+pub use outcome::{Minimum, Outcome};
+pub use passes::{Both, Kernel, blocks, blocks_of};
 pub use until::Until;
 pub use values::{MOST, Values};

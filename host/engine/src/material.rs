@@ -5,8 +5,11 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::model::Role;
 use brdfit_core::real::Real;
 
-use crate::uncertainty::NEAR_ZERO;
-use crate::{Model, Values};
+use crate::model::Model;
+use crate::values::Values;
+
+/// Where kappa is 0 there is no derivative by it: gradients are taken here, and displacements are told for there, so that their products are right.
+pub const NEAR_ZERO: f64 = 1e-4;
 
 /// A model with the values of its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +21,6 @@ pub struct Material {
 }
 
 impl Material {
-    /// Of the paper's model, Eq. 14, in the order of [`brdfit_core::brdf::NAMES`].
-    pub fn paper(values: [f64; 6]) -> Self {
-        Material {
-            model: Model::paper(),
-            values: values.into(),
-        }
-    }
-
     /// The parameters of Eq. 14; `None` of another model.
     pub fn eq_14(&self) -> Option<Params<f64>> {
         let values = <[f64; 6]>::try_from(&self.values[..]).ok()?;

@@ -1,18 +1,20 @@
-//! A model as the program knows it: what it is called, its parameters, and its computations, compiled.
+//! A model as the program knows it: what it is called, its parameters, and its values.
 
+use std::any::Any;
 use std::f64::consts::LN_2;
 
 use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::{Parameter, Role};
 
-use crate::compiled::{Both, Compiled, Whole, parameters_of, whole};
-use crate::models::MODELS;
+use crate::passes::Point;
 use crate::scale::{self, Scale};
-use crate::simd::SCALAR;
-use crate::{FitError, FitOptions, Values};
+use crate::values::Values;
 
-/// A model that scans can be fitted with, one of [`MODELS`].
+/// Name of the paper's model, Eq. 14.
+pub(crate) const PAPER: &str = "beckmann";
+
+/// A model that scans can be fitted with, one of [`MODELS`](crate::models::MODELS) or one's own.
 pub struct Model {
     /// What options and results call it.
     pub name: &'static str,
@@ -24,9 +26,9 @@ pub struct Model {
     pub parameters: &'static [Parameter],
     /// The terms that can be left out of it; 0 if it is not a microfacet model.
     pub terms: u8,
-    pub(crate) whole: Whole,
-    /// Sets of its terms that are compiled on their own.
-    pub(crate) sets: &'static [Compiled],
+    pub(crate) point: Point,
+    /// The searches that are compiled for it, which this description need not know.
+    pub(crate) searches: &'static (dyn Any + Send + Sync),
 }
 
 /// The name, which is the same in every process, as the addresses of the computations are not.
@@ -43,46 +45,6 @@ impl PartialEq for Model {
 }
 
 impl Model {
-    /// The paper's model, Eq. 14.
-    pub const fn paper() -> &'static Model {
-        &MODELS[0]
-    }
-
-    /// A model of one's own, from [`brdfit_core::formula::Own`] of a formula or from another [`brdfit_core::model::Model`].
-    ///
-    /// Everything of the engine takes it: searches, minima, uncertainty, `f32`, joint and robust fits; `examples/own_model.rs` fits one.
-    /// `P` is the number of its parameters and `C` that of its numbers a pair of directions, which is 8 for a formula.
-    /// Its passes go lane by lane.
-    ///
-    /// ```
-    /// use brdfit_core::formula::Own;
-    /// use brdfit_core::models::Abg;
-    /// use brdfit_engine::{FitOptions, Model};
-    ///
-    /// static MINE: Model = Model::own::<Own<Abg>, 4, 8>("mine", "what it is", "where it is from");
-    /// assert_eq!(FitOptions::of(&MINE).lower.len(), 4);
-    /// ```
-    pub const fn own<M: Both<P, C>, const P: usize, const C: usize>(
-        name: &'static str,
-        what: &'static str,
-        source: &'static str,
-    ) -> Model {
-        Model {
-            name,
-            what,
-            source,
-            parameters: parameters_of::<M, P, C>(),
-            terms: 0,
-            whole: whole::<M, P, C, SCALAR>(0),
-            sets: &[],
-        }
-    }
-
-    /// The model of this name.
-    pub fn find(name: &str) -> Option<&'static Model> {
-        MODELS.iter().find(|model| model.name == name)
-    }
-
     /// Place of the parameter of this name.
     pub fn place(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|parameter| parameter.name == name)
@@ -111,7 +73,7 @@ impl Model {
 
     /// Is it the model of Eq. 14?
     pub fn is_paper(&self) -> bool {
-        self == Model::paper()
+        self.name == PAPER
     }
 
     /// Does `terms` leave out the parameter in this place?
@@ -156,52 +118,21 @@ impl Model {
 
     /// ln f in the directions of `sample`, f in sr^-1, and its derivatives by the parameters; none beyond the horizon.
     pub fn gradient(&self, values: &[f64], sample: &Sample<f64>) -> Option<(f64, Values)> {
-        let (inside, exponent) = scale::ordinary(self, values);
-        let (ln_f, mut gradient) = (self.whole.gradient)(&inside, sample)?;
+        let (inside, exponent) = scale::ordinary(self.parameters, values);
+        let (ln_f, mut gradient) = (self.point.gradient)(&inside, sample)?;
         if exponent != 0 {
             gradient = Scale {
                 brdf: -exponent,
                 weight: 0,
             }
-            .given(self, &gradient);
+            .given(self.parameters, &gradient);
         }
         Some((ln_f + f64::from(exponent) * LN_2, gradient))
     }
 
     /// ln f in the directions of `sample`, f in sr^-1; none beyond the horizon.
     pub fn ln_f(&self, values: &[f64], sample: &Sample<f64>) -> Option<f64> {
-        let (inside, exponent) = scale::ordinary(self, values);
-        Some((self.whole.ln_f)(&inside, sample)? + f64::from(exponent) * LN_2)
-    }
-
-    /// What is compiled of the terms of `options`, and the options for it: what no compiled set leaves out is held.
-    pub(crate) fn compiled(&self, options: &FitOptions) -> Result<(&Compiled, FitOptions), FitError> {
-        let whole = self.whole_of(options)?;
-        if let Some(set) = self.sets.iter().find(|set| set.terms == whole.terms) {
-            let terms = whole.terms;
-            return Ok((set, FitOptions { terms, ..*options }));
-        }
-        Ok((&self.whole.compiled, whole))
-    }
-
-    /// The options for the whole model: what their terms leave out is held.
-    pub(crate) fn whole_of(&self, options: &FitOptions) -> Result<FitOptions, FitError> {
-        let (terms, mut options) = (options.terms & self.terms, *options);
-        if self.terms != 0 && terms & (DIFFUSE | SURFACE | VOLUME) == 0 {
-            return Err(FitError::Terms(options.terms));
-        }
-        options.terms = terms;
-        self.hold(&mut options);
-        Ok(options)
-    }
-
-    /// Holds what the terms of `options` leave out at its value of absence.
-    pub(crate) fn hold(&self, options: &mut FitOptions) {
-        for place in 0..self.parameters.len() {
-            if self.left_out(options.terms, place) {
-                options.lower[place] = self.absent(place);
-                options.upper[place] = self.absent(place);
-            }
-        }
+        let (inside, exponent) = scale::ordinary(self.parameters, values);
+        Some((self.point.ln_f)(&inside, sample)? + f64::from(exponent) * LN_2)
     }
 }

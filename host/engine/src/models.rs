@@ -6,9 +6,13 @@ use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Mask
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::models::{Abg, BeardMaxwell, HarveyShack, KCorrelation, KCorrelation2, SandfordRobertson};
 
-use crate::Model;
-use crate::compiled::{Compiled, compile, parameters_of, whole};
-use crate::simd::{AVX2, AVX512, EVERY};
+use crate::bind::{searches, set};
+use crate::compiled::Compiled;
+use crate::material::Material;
+use crate::model::{Model, PAPER};
+use crate::options::FitOptions;
+use crate::passes::{Both, parameters_of, point};
+use crate::simd::{AVX2, AVX512, EVERY, SCALAR};
 
 /// What is new in a model is said in its source; all of these are put together from Eq. 5 of the paper.
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
@@ -16,13 +20,13 @@ const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 /// `MODELS[0]` is Eq. 14.
 pub static MODELS: [Model; 20] = [
     Model {
-        name: "beckmann",
+        name: PAPER,
         what: "Eq. 14: Beckmann, V-groove masking",
         source: "Bishop, Butler and Marciniak 2021, Eq. 14",
         parameters: parameters_of::<Microfacet<ALL>, 6, 6>(),
         terms: ALL,
-        whole: whole::<Microfacet<ALL>, 6, 6, EVERY>(ALL),
-        sets: &EQ_14,
+        point: point::<Microfacet<ALL>, 6, 6>(),
+        searches: const { &searches::<Microfacet<ALL>, 6, 6, EVERY>(ALL, &EQ_14) },
     },
     microfacet::<ALL, Beckmann, Smith, 6, 8>("beckmann-smith", "Beckmann, Smith masking", "Walter et al. 2007"),
     microfacet::<ALL, Beckmann, NoMasking, 6, 6>("beckmann-unmasked", "Beckmann, no masking", EQ_5),
@@ -65,8 +69,8 @@ pub static MODELS: [Model; 20] = [
         source: "Cook and Torrance 1982",
         parameters: parameters_of::<Microfacet<{ D | S | A }>, 5, 6>(),
         terms: D | S | A,
-        whole: whole::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(D | S | A),
-        sets: &[],
+        point: point::<Microfacet<{ D | S | A }>, 5, 6>(),
+        searches: const { &searches::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(D | S | A, &[]) },
     },
     microfacet::<{ D | S | A }, Beckmann, InAngle<VGroove>, 5, 6>(
         "torrance-sparrow",
@@ -110,6 +114,64 @@ pub static MODELS: [Model; 20] = [
     ),
 ];
 
+impl Model {
+    /// The paper's model, Eq. 14.
+    pub const fn paper() -> &'static Model {
+        &MODELS[0]
+    }
+
+    /// A model of one's own, from [`brdfit_core::formula::Own`] of a formula or from another [`brdfit_core::model::Model`].
+    ///
+    /// Everything of the engine takes it: searches, minima, uncertainty, `f32`, joint and robust fits; `examples/own_model.rs` fits one.
+    /// `P` is the number of its parameters and `C` that of its numbers a pair of directions, which is 8 for a formula.
+    /// Its passes go lane by lane.
+    ///
+    /// ```
+    /// use brdfit_core::formula::Own;
+    /// use brdfit_core::models::Abg;
+    /// use brdfit_engine::{FitOptions, Model};
+    ///
+    /// static MINE: Model = Model::own::<Own<Abg>, 4, 8>("mine", "what it is", "where it is from");
+    /// assert_eq!(FitOptions::of(&MINE).lower.len(), 4);
+    /// ```
+    pub const fn own<M: Both<P, C>, const P: usize, const C: usize>(
+        name: &'static str,
+        what: &'static str,
+        source: &'static str,
+    ) -> Model {
+        Model {
+            name,
+            what,
+            source,
+            parameters: parameters_of::<M, P, C>(),
+            terms: 0,
+            point: point::<M, P, C>(),
+            searches: const { &searches::<M, P, C, SCALAR>(0, &[]) },
+        }
+    }
+
+    /// The model of this name.
+    pub fn find(name: &str) -> Option<&'static Model> {
+        MODELS.iter().find(|model| model.name == name)
+    }
+}
+
+impl Material {
+    /// Of the paper's model, Eq. 14, in the order of [`brdfit_core::brdf::NAMES`].
+    pub fn paper(values: [f64; 6]) -> Self {
+        Material {
+            model: Model::paper(),
+            values: values.into(),
+        }
+    }
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        FitOptions::of(Model::paper())
+    }
+}
+
 /// A model put together from Eq. 5, of which terms can be left out as of Eq. 14.
 const fn microfacet<const TERMS: u8, D, M, const P: usize, const C: usize>(
     name: &'static str,
@@ -126,8 +188,8 @@ where
         source,
         parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
         terms: TERMS & ALL,
-        whole: whole::<Microfacet<TERMS, D, M>, P, C, AVX2>(TERMS & ALL),
-        sets: &[],
+        point: point::<Microfacet<TERMS, D, M>, P, C>(),
+        searches: const { &searches::<Microfacet<TERMS, D, M>, P, C, AVX2>(TERMS & ALL, &[]) },
     }
 }
 
@@ -148,5 +210,5 @@ static EQ_14: [Compiled; 7] = [
 ];
 
 const fn eq_14<const TERMS: u8, const P: usize>() -> Compiled {
-    compile::<Microfacet<TERMS>, P, 6, AVX512>(TERMS)
+    set::<Microfacet<TERMS>, P, 6, AVX512>(TERMS)
 }

@@ -3,9 +3,13 @@
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
 use brdfit_core::search::{CANDIDATES, PAPER_STARTS};
 
+use crate::error::FitError;
+use crate::instrument::{Instrument, View};
+use crate::material::Material;
+use crate::model::Model;
 use crate::simd::Simd;
 use crate::until::Until;
-use crate::{Instrument, Material, Model, Outcome, Values, View};
+use crate::values::Values;
 
 /// How the global optimum is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,12 +58,6 @@ pub struct FitOptions {
     pub until: Until,
 }
 
-impl Default for FitOptions {
-    fn default() -> Self {
-        FitOptions::of(Model::paper())
-    }
-}
-
 impl FitOptions {
     /// To fit `model` within the bounds of its description, whole.
     pub fn of(model: &'static Model) -> Self {
@@ -77,6 +75,20 @@ impl FitOptions {
             simd: Simd::best(),
             until: Until::default(),
         }
+    }
+
+    /// The same for the whole model: what the terms leave out is held at its value of absence.
+    pub(crate) fn held(&self) -> Result<FitOptions, FitError> {
+        let (model, mut options) = (self.model, *self);
+        options.terms = self.terms & model.terms;
+        if model.terms != 0 && options.terms & (DIFFUSE | SURFACE | VOLUME) == 0 {
+            return Err(FitError::Terms(self.terms));
+        }
+        for place in (0..model.parameters.len()).filter(|&place| model.left_out(options.terms, place)) {
+            options.lower[place] = model.absent(place);
+            options.upper[place] = model.absent(place);
+        }
+        Ok(options)
     }
 
     /// Places of the parameters that are part of the terms.
@@ -97,19 +109,6 @@ impl FitOptions {
     /// Number of priors that count.
     pub(crate) fn prior_count(&self) -> usize {
         self.with_prior().count()
-    }
-
-    /// For further fits of the samples that `outcome` is of: without outliers to look for, with priors that weigh as they did there, and with offsets near the one that was found.
-    pub fn settled(&self, outcome: &Outcome) -> Self {
-        /// Radians (1.15 degrees).
-        const NEAR: f64 = 0.02;
-        let mut options = FitOptions { robust: false, ..*self };
-        options.instrument.sigma = outcome.sigma.or(self.instrument.sigma);
-        if let (Some((least, most)), Some(offset)) = (self.instrument.offsets, outcome.offset) {
-            let near = (offset.value - NEAR, offset.value + NEAR);
-            options.instrument.offsets = Some((least.max(near.0), most.min(near.1)));
-        }
-        options
     }
 
     /// The model with these values, as the aperture sees it.

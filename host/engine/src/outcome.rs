@@ -1,12 +1,14 @@
-//! What a fit gives, or why it failed.
+//! What a fit gives.
 
-use brdfit_core::geometry::SampleError;
 use brdfit_core::lm::Stop;
 use brdfit_core::search::Evaluations;
 
-use crate::robust::Robust;
+use crate::instrument::{Offset, View};
+use crate::material::Material;
+use crate::model::Model;
+use crate::options::FitOptions;
 use crate::uncertainty::Uncertainty;
-use crate::{Material, Model, Offset, Values, View};
+use crate::values::Values;
 
 /// One distinct minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,24 +64,13 @@ pub struct Outcome {
     pub uncertainty: Uncertainty,
 }
 
-/// Why no fit was made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum FitError {
-    /// The sample of this index is not valid.
-    Sample(usize, SampleError),
-    /// Fewer samples than parameters: how many of each.
-    TooFew(usize, usize),
-    /// The sample of this index is out of the plane of incidence, or so near to the horizon that an offset moves it below.
-    OutOfPlane(usize),
-    /// No parameters within the bounds keep what is limited at 1 or below.
-    Limit,
-    /// No compiled set has these terms.
-    Terms(u8),
-    /// There is no proof of the optimum for the model of this name.
-    NoProof(&'static str),
-    /// The fit was no longer wanted: see [`crate::Until`].
-    Interrupted,
+/// What a robust fit left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robust {
+    /// Standard deviation of the residuals of ln f, from the median size of those that were kept; dimensionless.
+    pub scale: f64,
+    /// The indices of the outliers, in order: their residuals are beyond 6 scales, or more where samples are few.
+    pub outliers: Vec<usize>,
 }
 
 impl Outcome {
@@ -111,23 +102,17 @@ impl Outcome {
     }
 }
 
-impl std::fmt::Display for FitError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            FitError::Sample(index, error) => write!(f, "sample {}: {error}", index + 1),
-            FitError::TooFew(samples, parameters) => {
-                write!(f, "{samples} samples cannot determine {parameters} parameters")
-            }
-            FitError::OutOfPlane(index) => write!(
-                f,
-                "sample {} is out of the plane of incidence, where there is no offset of theta_s to fit",
-                index + 1
-            ),
-            FitError::Limit => f.write_str("no parameters within the bounds reflect less light than arrives"),
-            FitError::NoProof(model) => write!(f, "there is no proof of the optimum for the model {model}"),
-            FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
-            FitError::Interrupted => f.write_str("interrupted"),
+impl FitOptions {
+    /// For further fits of the samples that `outcome` is of: without outliers to look for, with priors that weigh as they did there, and with offsets near the one that was found.
+    pub fn settled(&self, outcome: &Outcome) -> Self {
+        /// Radians (1.15 degrees).
+        const NEAR: f64 = 0.02;
+        let mut options = FitOptions { robust: false, ..*self };
+        options.instrument.sigma = outcome.sigma.or(self.instrument.sigma);
+        if let (Some((least, most)), Some(offset)) = (self.instrument.offsets, outcome.offset) {
+            let near = (offset.value - NEAR, offset.value + NEAR);
+            options.instrument.offsets = Some((least.max(near.0), most.min(near.1)));
         }
+        options
     }
 }
-impl std::error::Error for FitError {}

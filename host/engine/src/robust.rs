@@ -10,7 +10,12 @@ mod subset;
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
-use crate::{FitError, FitOptions, Method, Outcome, Values, descend, fit_from};
+use crate::error::FitError;
+use crate::least_squares::{self, descend};
+use crate::options::{FitOptions, Method};
+use crate::outcome::Outcome;
+pub use crate::outcome::Robust;
+use crate::values::Values;
 use scale::Biweight;
 
 /// Residuals beyond this many scales are outliers, of many samples.
@@ -46,15 +51,6 @@ fn without(samples: &[Sample<f64>], outliers: &[usize]) -> Vec<Sample<f64>> {
     kept.map(|(_, sample)| *sample).collect()
 }
 
-/// What a robust fit left out.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Robust {
-    /// Standard deviation of the residuals of ln f, from the median size of those that were kept; dimensionless.
-    pub scale: f64,
-    /// The indices of the outliers, in order: their residuals are beyond 6 scales, or more where samples are few.
-    pub outliers: Vec<usize>,
-}
-
 /// The samples around the specular or the retro direction, nearest first, that a fit left out as too bright, if they are enough to be a lobe.
 pub fn lobe_left_out(samples: &[Sample<f64>], outcome: &Outcome) -> Option<Vec<usize>> {
     let (view, robust) = (outcome.view(), outcome.robust.as_ref()?);
@@ -75,7 +71,7 @@ pub(crate) fn fit(samples: &[Sample<f64>], options: &FitOptions, known: &[Values
     };
     plain.instrument.offsets = None;
     let free = options.free().count();
-    let mut outcome = fit_from(samples, &plain, known)?;
+    let mut outcome = least_squares::fit(samples, &plain, known)?;
     let mut evaluations = outcome.evaluations;
     let counted = samples.iter().filter(|sample| sample.weight != 0.0).count();
     let mut robust = Robust {
@@ -97,7 +93,7 @@ pub(crate) fn fit(samples: &[Sample<f64>], options: &FitOptions, known: &[Values
                 break;
             }
             let rest = without(samples, &robust.outliers);
-            outcome = fit_from(&rest, &plain, &[at.params])?;
+            outcome = least_squares::fit(&rest, &plain, &[at.params])?;
             outcome.robust = Some(robust.clone());
             evaluations.cost += outcome.evaluations.cost;
             evaluations.linearize += outcome.evaluations.linearize;
@@ -145,7 +141,7 @@ fn start(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Re
     };
     let each = (0..SUBSETS).into_par_iter().map(|k| {
         let few = subset::draw(&judges, options.seed, k, free + 2);
-        let found = fit_from(&few, &short, &[])?;
+        let found = least_squares::fit(&few, &short, &[])?;
         // One step tells most of what all would.
         judge.step(&judges, options, &judge.at(&judges, options, found.params))
     });
@@ -174,7 +170,7 @@ fn start(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Re
     // Few samples make a lobe, and where most others are fitted as well without it no scale tells.
     let is_out = |place: &usize| best.residuals[*place].abs() > limit && !lobe.contains(place);
     let outliers: Vec<usize> = (0..samples.len()).filter(is_out).collect();
-    let with = fit_from(&without(samples, &outliers), options, &[])?;
+    let with = least_squares::fit(&without(samples, &outliers), options, &[])?;
     let with = follow(samples, options, &judge, with.params)?;
     let inside = lobe
         .iter()

@@ -6,21 +6,12 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::Parameter;
 
-use crate::joint::Fitted;
-use crate::trace::Trace;
-use crate::uncertainty::Uncertainty;
-use crate::{FitError, FitOptions, Minimum, Model, Outcome, Precision, Values};
+use crate::values::Values;
 
 /// A largest BRDF or weight within 2^-30 and 2^30, about 1e-9 and 1e9, is of an ordinary size; nothing darker or brighter has been measured.
-const ORDINARY: i32 = 30;
-/// In `f32` the squares of what is below 2^-14, 6e-5, and so is its darkest sample, lose digits.
-const SINGLE: i32 = 14;
-/// Binary digits over which samples may spread before their middle counts, in place of the largest.
-const SPREAD: i32 = 60;
+pub(crate) const ORDINARY: i32 = 30;
 /// The largest BRDF is put between 2^-3 and 2^-2 sr^-1, where rho_d of a matt surface is below 1.
-const LARGEST: i32 = -2;
-/// Bounds beyond 2^60 bind nothing, and their squares are numbers of `f32`.
-const UNBOUND: f64 = (1u64 << 60) as f64;
+pub(crate) const LARGEST: i32 = -2;
 
 /// Exponents of the powers of two that are taken out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,23 +23,6 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// What has to be taken out of these scans for a fit with these options; none of ordinary ones.
-    ///
-    /// A model without weights cannot be scaled, and its scans keep their size.
-    pub fn of(scans: &[&[Sample<f64>]], options: &FitOptions) -> Option<Scale> {
-        let least = match options.precision {
-            Precision::F64 => -ORDINARY,
-            Precision::F32 => -SINGLE,
-        };
-        let all = || scans.iter().flat_map(|samples| samples.iter());
-        let brdf = match options.model.parameters.iter().any(Parameter::is_weight) {
-            true => exponent(all().map(|sample| sample.brdf), least).map_or(0, |size| size - LARGEST),
-            false => 0,
-        };
-        let weight = exponent(all().map(|sample| sample.weight.abs()), -ORDINARY).unwrap_or(0);
-        (brdf != 0 || weight != 0).then_some(Scale { brdf, weight })
-    }
-
     /// Is the BRDF of a size that no surface has, so that its unit is not 1/sr?
     pub fn is_of_another_unit(self) -> bool {
         self.brdf != 0 && (self.brdf + LARGEST).abs() > ORDINARY
@@ -64,60 +38,25 @@ impl Scale {
         samples.iter().map(one).collect()
     }
 
-    /// The options for these samples.
-    ///
-    /// The bounds of a model's description are those of a BRDF per steradian; what is of no such size has another unit, and bounds that nobody changed are taken in that.
-    ///
-    /// # Errors
-    /// [`FitError::Limit`] where a reflectance is to be limited that is far above 1; far below 1 there is nothing to limit.
-    pub fn options(self, options: &FitOptions) -> Result<FitOptions, FitError> {
-        let mut inside = *options;
-        if self.is_of_another_unit() && self.brdf > 0 && options.instrument.limit.is_some() {
-            return Err(FitError::Limit);
-        }
-        if self.brdf != 0 {
-            inside.instrument.limit = None;
-        }
-        inside.instrument.sigma = options.instrument.sigma.map(|sigma| libm::ldexp(sigma, -self.weight));
-        for (place, parameter) in options.model.parameters.iter().enumerate() {
-            if !parameter.is_weight() || self.brdf == 0 {
-                continue;
-            }
-            let taken = |value: f64| libm::ldexp(value, -self.brdf);
-            if !self.is_of_another_unit() || (options.lower[place], options.upper[place]) != parameter.bounds {
-                inside.lower[place] = taken(options.lower[place]).min(UNBOUND);
-                inside.upper[place] = taken(options.upper[place]).min(UNBOUND);
-            }
-            if let Some(prior) = &mut inside.instrument.priors[place] {
-                (prior.mean, prior.sigma) = (taken(prior.mean), taken(prior.sigma));
-            }
-        }
-        Ok(inside)
-    }
-
     /// Values without the scale.
-    pub fn taken(self, model: &Model, values: &Values) -> Values {
-        self.scaled(model, values, -1)
+    pub fn taken(self, parameters: &[Parameter], values: &Values) -> Values {
+        self.scaled(parameters, values, -1)
     }
 
     /// Values with the scale.
-    pub fn given(self, model: &Model, values: &Values) -> Values {
-        self.scaled(model, values, 1)
+    pub fn given(self, parameters: &[Parameter], values: &Values) -> Values {
+        self.scaled(parameters, values, 1)
     }
 
-    fn scaled(self, model: &Model, values: &Values, sign: i32) -> Values {
+    fn scaled(self, parameters: &[Parameter], values: &Values, sign: i32) -> Values {
         Values::from_fn(values.len(), |place| {
-            libm::ldexp(values[place], sign * self.exponent(model, place))
+            libm::ldexp(values[place], sign * self.exponent(parameters, place))
         })
     }
 
     /// That of a parameter.
-    fn exponent(self, model: &Model, place: usize) -> i32 {
-        if model.parameters[place].is_weight() {
-            self.brdf
-        } else {
-            0
-        }
+    pub(crate) fn exponent(self, parameters: &[Parameter], place: usize) -> i32 {
+        if parameters[place].is_weight() { self.brdf } else { 0 }
     }
 
     /// A sum of squared residuals.
@@ -125,81 +64,14 @@ impl Scale {
         libm::ldexp(cost, 2 * self.weight)
     }
 
-    fn residual(self, residual: f64) -> f64 {
+    pub(crate) fn residual(self, residual: f64) -> f64 {
         libm::ldexp(residual, self.weight)
-    }
-
-    /// What was found, in the unit of the scan.
-    pub fn outcome(self, mut found: Outcome) -> Outcome {
-        let model = found.model;
-        found.params = self.given(model, &found.params);
-        for minimum in &mut found.minima {
-            *minimum = Minimum {
-                params: self.given(model, &minimum.params),
-                mse2: self.cost(minimum.mse2),
-                ..*minimum
-            };
-        }
-        found.cost = self.cost(found.cost);
-        found.mse2 = self.cost(found.mse2);
-        found.prior_cost = self.cost(found.prior_cost);
-        found.rms_ln = self.residual(found.rms_ln);
-        found.sigma = found.sigma.map(|sigma| self.residual(sigma));
-        if let Some(robust) = &mut found.robust {
-            robust.scale = self.residual(robust.scale);
-        }
-        found.uncertainty = self.uncertainty(model, found.uncertainty);
-        found
-    }
-
-    fn uncertainty(self, model: &Model, mut known: Uncertainty) -> Uncertainty {
-        known.scale = self.residual(known.scale);
-        known.stderr = self.given(model, &known.stderr);
-        known.stderr_lifted = self.given(model, &known.stderr_lifted);
-        for axis in known.axes.iter_mut().chain(&mut known.axes_lifted) {
-            *axis = self.given(model, axis);
-        }
-        for (i, row) in known.cov.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                // At once, since a half of it may be no number.
-                *entry = libm::ldexp(*entry, self.exponent(model, i) + self.exponent(model, j));
-            }
-        }
-        known
-    }
-
-    /// The course of a search, in the unit of the scan.
-    pub fn trace(self, model: &Model, mut trace: Trace) -> Trace {
-        for record in &mut trace.records {
-            record.params = self.given(model, &record.params);
-            record.cost = self.cost(record.cost);
-        }
-        trace
-    }
-
-    /// A joint fit, in the unit of the scans.
-    pub fn joint(self, model: &Model, fitted: Fitted) -> Fitted {
-        let errors = fitted.errors.iter().map(|errors| {
-            let each = errors.iter().enumerate();
-            let one = |(place, error): (usize, &Option<f64>)| {
-                error.map(|error| libm::ldexp(error, self.exponent(model, place)))
-            };
-            each.map(one).collect()
-        });
-        Fitted {
-            errors: errors.collect(),
-            scans: fitted.scans.iter().map(|values| self.given(model, values)).collect(),
-            cost: self.cost(fitted.cost),
-            of_samples: self.cost(fitted.of_samples),
-            separate: self.cost(fitted.separate),
-            ..fitted
-        }
     }
 }
 
 /// Values of a model with weights of an ordinary size, and the exponent of what f was divided by for that.
-pub(crate) fn ordinary(model: &Model, values: &[f64]) -> (Values, i32) {
-    let weights = values.iter().zip(model.parameters);
+pub(crate) fn ordinary(parameters: &[Parameter], values: &[f64]) -> (Values, i32) {
+    let weights = values.iter().zip(parameters);
     let weights = weights.filter(|(_, parameter)| parameter.is_weight());
     let largest = weights.map(|(weight, _)| *weight).fold(0.0, f64::max);
     let exponent = libm::frexp(largest).1;
@@ -210,22 +82,5 @@ pub(crate) fn ordinary(model: &Model, values: &[f64]) -> (Values, i32) {
         brdf: exponent,
         weight: 0,
     };
-    (scale.taken(model, &values.into()), exponent)
-}
-
-/// The exponent of the largest of some numbers if it is not of an ordinary size, of which the least is 2^`least_ordinary`; where they spread far, that of their middle.
-fn exponent(numbers: impl Iterator<Item = f64>, least_ordinary: i32) -> Option<i32> {
-    let ordinary = least_ordinary..=ORDINARY;
-    let counted = numbers.filter(|x| x.is_finite() && *x > 0.0);
-    let (least, largest) = counted.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
-    if largest == 0.0 {
-        return None;
-    }
-    let (low, high) = (libm::frexp(least).1, libm::frexp(largest).1);
-    let size = if high - low > SPREAD {
-        low + (high - low) / 2
-    } else {
-        high
-    };
-    (!ordinary.contains(&high) && !ordinary.contains(&size)).then_some(size)
+    (scale.taken(parameters, &values.into()), exponent)
 }

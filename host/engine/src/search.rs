@@ -1,4 +1,14 @@
-//! Chooses what is compiled of a model, and runs the search.
+//! The search of one scan, over whatever gives its passes.
+
+pub mod beside;
+pub mod calibration;
+pub mod joint;
+pub mod nuisance;
+pub mod offset;
+pub mod scaled;
+pub mod settled;
+pub mod setup;
+pub mod watched;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::lm::{self, Bounds, Options, Stop};
@@ -7,67 +17,18 @@ use brdfit_core::real::Real;
 use brdfit_core::search::{self, Found, Scene};
 use rayon::prelude::*;
 
-use crate::compiled::Kernel;
-use crate::instrument::beside::{Beside, Rows};
-use crate::instrument::offset::Nuisance;
-use crate::instrument::settled::Settled;
-use crate::instrument::setup::{self, Setup};
+use crate::error::FitError;
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
-use crate::outcome::{FitError, Minimum, Outcome};
-use crate::scale::Scale;
+use crate::outcome::{Minimum, Outcome};
+use crate::passes::Kernel;
+use crate::uncertainty;
 use crate::until::Watched;
-use crate::{Values, robust, uncertainty};
-
-/// Fits one scan; threads of the current rayon pool share the starts of the `paper` method, and change no bit.
-///
-/// # Errors
-/// [`FitError`].
-pub fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Result<Outcome, FitError> {
-    fit_from(samples, options, &[])
-}
-
-/// The same from values of the model's parameters that are known too: the fit ends no higher than they are.
-///
-/// # Errors
-/// [`FitError`].
-pub fn fit_from(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
-    let Some(scale) = Scale::of(&[samples], options) else {
-        return fit_ordinary(samples, options, known);
-    };
-    let known: Vec<Values> = known.iter().map(|values| scale.taken(options.model, values)).collect();
-    let found = fit_ordinary(&scale.samples(samples), &scale.options(options)?, &known)?;
-    Ok(scale.outcome(found))
-}
-
-/// The same of samples of an ordinary size.
-fn fit_ordinary(samples: &[Sample<f64>], options: &FitOptions, known: &[Values]) -> Result<Outcome, FitError> {
-    if options.robust {
-        return robust::fit(samples, options, known);
-    }
-    if options.instrument.is_plain() {
-        return setup::run(samples, options, &Setup::default(), known).map(|outcome| outcome.calibrated(options));
-    }
-    setup::fit(samples, options, known).map(|outcome| outcome.calibrated(options))
-}
-
-/// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost.
-///
-/// # Errors
-/// [`FitError::Terms`], [`FitError::Sample`] and [`FitError::Interrupted`].
-pub fn descend(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-    starts: &[Values],
-) -> Result<Option<(f64, Values)>, FitError> {
-    let model = options.model;
-    let Some(scale) = Scale::of(&[samples], options) else {
-        return setup::descend(samples, options, starts);
-    };
-    let starts: Vec<Values> = starts.iter().map(|values| scale.taken(model, values)).collect();
-    let end = setup::descend(&scale.samples(samples), &scale.options(options)?, &starts)?;
-    Ok(end.map(|(cost, values)| (scale.cost(cost), scale.given(model, &values))))
-}
+use crate::values::Values;
+use beside::{Beside, Rows};
+use nuisance::Nuisance;
+use settled::Settled;
+use setup::Setup;
 
 /// Refuses fewer samples and priors than free parameters.
 pub(crate) fn enough(samples: &[Sample<f64>], options: &FitOptions) -> Result<(), FitError> {

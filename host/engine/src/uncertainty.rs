@@ -4,12 +4,11 @@ use brdfit_core::lm::Bounds;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::{self as core, Axes, Place};
 
-use crate::compiled::Kernel;
 use crate::layout::Layout;
-use crate::{FitOptions, Values};
-
-/// Where kappa is 0 there is no derivative by it: gradients are taken here, and displacements are told for there, so that their products are right.
-pub const NEAR_ZERO: f64 = 1e-4;
+pub use crate::material::NEAR_ZERO;
+use crate::options::FitOptions;
+use crate::passes::Kernel;
+use crate::values::Values;
 
 /// A displacement of this size stands for one without any limit, of which 0 times a slope of 0 is no number.
 pub const UNKNOWN: f64 = f64::MAX;

@@ -7,7 +7,7 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::search::{Candidate, Region, Scene, Waits};
 
-use crate::compiled::Kernel;
+use crate::passes::Kernel;
 
 /// Until when a search is wanted: for good, or until a flag is set.
 ///
@@ -90,52 +90,5 @@ impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
     }
     fn apart(&self, x: &[R; P], y: &[R; P], factor: R) -> bool {
         self.scene.apart(x, y, factor)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use brdfit_core::geometry::Sample;
-
-    use super::*;
-    use crate::{FitError, FitOptions, Method, descend, fit, joint};
-
-    #[test]
-    fn a_search_that_is_not_wanted_ends() {
-        static OVER: AtomicBool = AtomicBool::new(true);
-        static GOES_ON: AtomicBool = AtomicBool::new(false);
-        let samples: Vec<Sample<f64>> = (0..40)
-            .map(|k| Sample::in_plane(0.7, 0.03 * f64::from(k), 0.1 + f64::from(k % 7)))
-            .collect();
-        for method in [Method::Default, Method::Paper] {
-            for robust in [false, true] {
-                let options = FitOptions {
-                    method,
-                    robust,
-                    starts: Some(40),
-                    ..FitOptions::default()
-                };
-                let until = |flag| FitOptions {
-                    until: Until::set(flag),
-                    ..options
-                };
-                assert_eq!(fit(&samples, &until(&OVER)), Err(FitError::Interrupted));
-                assert_eq!(fit(&samples, &until(&GOES_ON)), fit(&samples, &options));
-                let descend = |options: &FitOptions| descend(&samples, options, &[options.lower]);
-                assert_eq!(descend(&until(&OVER)), Err(FitError::Interrupted));
-                assert_eq!(descend(&until(&GOES_ON)), descend(&options));
-            }
-        }
-        let shared = [false, false, false, true, false, false];
-        let joint = |flag| {
-            let until = Until::set(flag);
-            let options = FitOptions {
-                until,
-                ..FitOptions::default()
-            };
-            joint::fit(&[&samples, &samples], &shared, &options)
-        };
-        assert_eq!(joint(&OVER), Err((2, FitError::Interrupted)));
-        assert!(joint(&GOES_ON).is_ok());
     }
 }

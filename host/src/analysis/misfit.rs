@@ -9,18 +9,18 @@ mod along;
 pub mod lines;
 pub mod mixture;
 pub mod process;
+mod rows;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
-use rayon::prelude::*;
 
 use super::profile::calibrate::threshold;
 use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
 use along::Along;
-use process::{Node, Residuals};
+use process::Node;
 
 /// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
 const EVIDENCE: f64 = 2.0;
@@ -51,7 +51,7 @@ fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Optio
         return None;
     }
     let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
-    let mut all = residuals(samples, view, &axes, known.scale)?;
+    let mut all = rows::residuals(samples, view, &axes, known.scale)?;
     let seen: Vec<bool> = (0..axes.len())
         .map(|k| {
             let squares: f64 = all.rows.iter().skip(k).step_by(axes.len()).map(|x| x * x).sum();
@@ -65,52 +65,6 @@ fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Optio
     let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
     let seen: Vec<usize> = (0..inside.len()).filter(|&k| seen[k]).map(|k| inside[k]).collect();
     Some(with(samples, view, known, &seen, &nodes))
-}
-
-/// Residuals that a thread takes at once.
-const SHARE: usize = 4096;
-
-/// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite.
-fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Residuals> {
-    let slopes = View {
-        material: view.material.off_zero(),
-        ..*view
-    };
-    let mut all = Residuals {
-        columns: axes.len(),
-        ..Residuals::default()
-    };
-    let mut places = Vec::with_capacity(samples.len());
-    for line in lines::of(samples) {
-        for (place, angle) in line {
-            places.push(place);
-            all.angles.push(angle);
-            all.offsets.push(angle - samples[place].theta_i);
-        }
-        all.ends.push(places.len());
-    }
-    all.values.resize(places.len(), 0.0);
-    all.rows.resize(places.len() * axes.len(), 0.0);
-    let one = |place: usize, value: &mut f64, row: &mut [f64]| {
-        let sample = &samples[place];
-        *value = view.residual(sample)? / scale;
-        let gradient = slopes.gradient(sample)?.1;
-        for (x, axis) in row.iter_mut().zip(axes) {
-            let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
-            *x = sum * sample.weight / scale;
-        }
-        (value.is_finite() && row.iter().all(|x| x.is_finite())).then_some(())
-    };
-    let values = all.values.par_chunks_mut(SHARE);
-    let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
-    let shares = shares.zip(places.par_chunks(SHARE));
-    let whole = shares.map(|((values, rows), places)| {
-        let rows = rows.chunks_mut(axes.len());
-        let mut points = places.iter().zip(values.iter_mut().zip(rows));
-        points.try_for_each(|(&place, (value, row))| one(place, value, row))
-    });
-    whole.collect::<Option<()>>()?;
-    Some(all)
 }
 
 /// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.

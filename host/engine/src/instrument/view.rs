@@ -4,8 +4,9 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::aperture::directions;
-use super::offset;
-use crate::{Material, Values};
+use super::moved::moved;
+use crate::material::Material;
+use crate::values::Values;
 
 /// A material as an instrument with an aperture and an offset sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +33,7 @@ impl From<&Material> for View {
 impl View {
     /// ln of the BRDF that is measured where the instrument reads the directions of `sample`, sr^-1; none beyond the horizon.
     pub fn ln_f(&self, sample: &Sample<f64>) -> Option<f64> {
-        let sample = offset::moved(sample, self.offset)?;
+        let sample = moved(sample, self.offset)?;
         if self.aperture == 0.0 {
             return self.material.ln_f(&sample);
         }
@@ -52,7 +53,7 @@ impl View {
     /// The same, and its derivatives by the parameters.
     pub fn gradient(&self, sample: &Sample<f64>) -> Option<(f64, Values)> {
         let ln_f = self.ln_f(sample)?;
-        let sample = offset::moved(sample, self.offset)?;
+        let sample = moved(sample, self.offset)?;
         if self.aperture == 0.0 {
             return self.material.gradient(&sample);
         }

@@ -7,7 +7,7 @@ use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
 
 use super::process::{Common, Node, cholesky};
-use super::residuals;
+use super::rows::residuals;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Values, View};
 

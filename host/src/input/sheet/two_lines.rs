@@ -1,6 +1,6 @@
 //! Names that stand in two lines.
 
-use super::{Line, is_head, is_number, is_pair, is_remark, parts};
+use super::lines::{Line, is_head, is_number, is_pair, is_remark, parts};
 use crate::input::head::Head;
 use crate::input::role::{self, Role};
 use crate::input::unit::Unit;

@@ -2,8 +2,10 @@
 
 use brdfit_core::uncertainty::Place;
 
+use crate::options::FitOptions;
+use crate::outcome::Outcome;
 use crate::uncertainty::Uncertainty;
-use crate::{FitOptions, Outcome, Values};
+use crate::values::Values;
 
 impl Outcome {
     /// With the uncertainty of the calibration: one factor of all samples, which the weights take, all together.

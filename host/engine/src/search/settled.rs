@@ -4,8 +4,8 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::search::{Candidate, Region, Scene};
 
 use super::beside::Rows;
-use super::offset::Nuisance;
-use crate::compiled::Kernel;
+use super::nuisance::Nuisance;
+use crate::passes::Kernel;
 
 /// A scan at its optimum: its sums are those of the samples and of the residuals beside them, less what an offset that is fitted too leaves open.
 pub struct Settled<'a, const P: usize> {

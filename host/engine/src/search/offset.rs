@@ -1,72 +1,21 @@
-//! A zero of theta_s that is off: the angle by which all samples are shifted, fitted with the model.
+//! The angle by which all samples are shifted, fitted with the model.
 //!
 //! The fit is searched at several offsets, and between the best one's neighbours a search in one dimension finds where the cost of the fit is least.
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 
-use super::View;
-use crate::{FitError, FitOptions, Outcome, Values};
+use super::beside::angles;
+use crate::error::FitError;
+use crate::instrument::signed;
+use crate::outcome::Outcome;
+use crate::values::Values;
 
-/// A sample whose direction is nearer to the plane of incidence than this lies in it, as a sine: 0.1 degrees.
-const IN_PLANE: f64 = 1.745e-3;
-/// Samples stay this far above the horizon, radians (0.1 degrees).
-const HORIZON: f64 = 0.001_745;
 /// Offsets at which the fit is searched, degrees; so is the one that the brightest samples tell.
 const SEARCHED: [f64; 9] = [0.0, -1.0, 1.0, -2.0, 2.0, -4.0, 4.0, -8.0, 8.0];
 /// The search in one dimension reaches this far to both sides of the best of them, radians.
 const REACH: f64 = 0.026;
 /// How often that is made again where it ended at an end, or the whole search was better.
 const LOOPS: usize = 8;
-
-/// The offset of a fit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offset {
-    /// What the instrument reads for theta_s = 0, radians, positive forward.
-    pub value: f64,
-    /// Its standard error, radians.
-    pub stderr: f64,
-    /// It is at an end of what was allowed.
-    pub at_bound: bool,
-}
-
-/// Scattering angle, radians, positive forward, of a sample in the plane of incidence; none of another.
-pub fn signed(sample: &Sample<f64>) -> Option<f64> {
-    let (sin_phi, cos_phi) = Real::portable_sin_cos(sample.delta_phi);
-    let across = Real::portable_sin_cos(sample.theta_s).0 * sin_phi;
-    (across.abs() <= IN_PLANE).then_some(if cos_phi < 0.0 { sample.theta_s } else { -sample.theta_s })
-}
-
-/// The sample where it is, if the instrument reads `offset` too much; none out of plane or beyond the horizon.
-pub fn moved(sample: &Sample<f64>, offset: f64) -> Option<Sample<f64>> {
-    if offset == 0.0 {
-        return Some(*sample);
-    }
-    let theta_s = signed(sample)? - offset;
-    (theta_s.abs() < 0.5 * f64::PI).then(|| Sample {
-        weight: sample.weight,
-        ..Sample::in_plane(sample.theta_i, theta_s, sample.brdf)
-    })
-}
-
-/// All samples moved.
-pub fn all_moved(samples: &[Sample<f64>], offset: f64) -> Result<Vec<Sample<f64>>, FitError> {
-    let each = samples.iter().enumerate();
-    each.map(|(place, sample)| moved(sample, offset).ok_or(FitError::OutOfPlane(place)))
-        .collect()
-}
-
-/// The part of a range of offsets that keeps every sample above the horizon.
-pub fn allowed(samples: &[Sample<f64>], (least, most): (f64, f64)) -> Result<(f64, f64), FitError> {
-    let (mut low, mut high) = (0.0f64, 0.0f64);
-    for (place, sample) in samples.iter().enumerate() {
-        let theta_s = signed(sample).ok_or(FitError::OutOfPlane(place))?;
-        (low, high) = (low.min(theta_s), high.max(theta_s));
-    }
-    let end = 0.5 * f64::PI - HORIZON;
-    let (least, most) = (least.max(high - end), most.min(low + end));
-    Ok((least.min(most), most))
-}
 
 /// The fit at the best offset within what is [`allowed`]; `search` and `descend` are those at an offset, the first of all minima and the second from given values alone.
 pub fn fit(
@@ -152,7 +101,7 @@ fn brightest(samples: &[Sample<f64>]) -> Option<f64> {
         let top = group.max_by(|a, b| a.brdf.total_cmp(&b.brdf))?;
         Some(signed(top)? - theta_i)
     };
-    let mut shifts: Vec<f64> = super::beside::angles(samples).into_iter().filter_map(shift).collect();
+    let mut shifts: Vec<f64> = angles(samples).into_iter().filter_map(shift).collect();
     shifts.sort_by(f64::total_cmp);
     shifts.get(shifts.len() / 2).copied()
 }
@@ -222,90 +171,4 @@ fn least_between(
         }
     }
     Ok(())
-}
-
-/// The derivative of each residual by the offset, and those by the solver's coordinates, of which only what is at right angles to it is known apart from it.
-pub struct Nuisance<const P: usize> {
-    /// J'c.
-    pub cross: [f64; P],
-    /// c'c.
-    pub square: f64,
-}
-
-impl<const P: usize> Nuisance<P> {
-    /// `gradient` gives the derivatives of ln f by the coordinates.
-    pub fn new(samples: &[Sample<f64>], view: &View, gradient: impl Fn(&Sample<f64>) -> [f64; P]) -> Self {
-        let mut nuisance = Nuisance {
-            cross: [0.0; P],
-            square: 0.0,
-        };
-        for sample in samples {
-            let slope = sample.weight * slope(sample, view);
-            let row = gradient(sample);
-            nuisance.square += slope * slope;
-            for k in 0..P {
-                nuisance.cross[k] += slope * sample.weight * row[k];
-            }
-        }
-        nuisance
-    }
-}
-
-/// Derivative of ln f by the offset at a sample that stands where it is, per radian.
-fn slope(sample: &Sample<f64>, view: &View) -> f64 {
-    const STEP: f64 = 1e-5;
-    let at = |offset: f64| View { offset, ..*view }.ln_f(sample);
-    match (at(STEP), at(-STEP)) {
-        (Some(right), Some(left)) => (right - left) / (2.0 * STEP),
-        _ => 0.0,
-    }
-}
-
-/// Standard error of the offset beside the parameters inside their bounds, radians, for residuals of standard deviation `scale`.
-pub fn stderr(
-    samples: &[Sample<f64>],
-    view: &View,
-    options: &FitOptions,
-    inside: &[usize],
-    scale: f64,
-    sigma: f64,
-) -> f64 {
-    let rows: Vec<(f64, Option<Values>)> = samples
-        .iter()
-        .map(|sample| {
-            let gradient = view.gradient(sample).map(|(_, gradient)| gradient);
-            (sample.weight, gradient)
-        })
-        .collect();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    // What is left of a column beside the others (modified Gram and Schmidt).
-    let rest = |basis: &[Vec<f64>], mut column: Vec<f64>| {
-        for axis in basis {
-            let part: f64 = column.iter().zip(axis).map(|(a, b)| a * b).sum();
-            column.iter_mut().zip(axis).for_each(|(a, b)| *a -= part * b);
-        }
-        let length = column.iter().map(|a| a * a).sum::<f64>().sqrt();
-        (column, length)
-    };
-    for &place in inside {
-        let slope =
-            |(weight, gradient): &(f64, Option<Values>)| gradient.map_or(0.0, |gradient| weight * gradient[place]);
-        let mut column: Vec<f64> = rows.iter().map(slope).collect();
-        let priors = options.instrument.priors.iter().enumerate();
-        column.extend(priors.map(|(other, prior)| match prior {
-            Some(prior) if other == place => sigma / prior.sigma,
-            _ => 0.0,
-        }));
-        let before = column.iter().map(|a| a * a).sum::<f64>().sqrt();
-        let (column, length) = rest(&basis, column);
-        if length > 1e-10 * before {
-            basis.push(column.into_iter().map(|a| a / length).collect());
-        }
-    }
-    let mut column: Vec<f64> = samples
-        .iter()
-        .map(|sample| sample.weight * slope(sample, view))
-        .collect();
-    column.extend(options.instrument.priors.iter().map(|_| 0.0));
-    scale / rest(&basis, column).1
 }

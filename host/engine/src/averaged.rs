@@ -9,9 +9,9 @@ use brdfit_core::pack::Pack;
 use brdfit_core::real::Real;
 use brdfit_core::search::{Candidate, Region, Scene};
 
-use super::aperture::directions;
-use crate::FitError;
-use crate::compiled::{Kernel, blocks_of};
+use crate::error::FitError;
+use crate::instrument::aperture::directions;
+use crate::passes::{Kernel, blocks_of};
 
 /// Lanes that go through a model side by side, and groups of them in a block.
 const GROUPS: usize = LANES / GROUP;

@@ -5,11 +5,13 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::real::Real;
 use brdfit_core::search::{Candidate, Region, Scene};
 
-use super::Limit;
 use super::setup::Setup;
-use crate::compiled::Kernel;
+use crate::instrument::Limit;
 use crate::layout::Layout;
-use crate::{FitOptions, Material};
+use crate::material::Material;
+use crate::options::FitOptions;
+use crate::passes::Kernel;
+use crate::values::Values;
 
 /// Angles of incidence closer than this count as one, radians (a hundredth of a degree).
 const SAME_ANGLE: f64 = 1.745e-4;
@@ -126,6 +128,20 @@ pub fn angles(samples: &[Sample<f64>]) -> Vec<f64> {
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a < SAME_ANGLE);
     angles
+}
+
+/// Is what is limited above 1 at an angle of incidence of the samples?
+pub fn is_above(options: &FitOptions, values: Values, samples: &[Sample<f64>]) -> bool {
+    let material = Material {
+        model: options.model,
+        values,
+    };
+    let Some(Limit(of)) = options.instrument.limit else {
+        return false;
+    };
+    angles(samples)
+        .into_iter()
+        .any(|theta_i| of(&material, theta_i).0 > 1.0)
 }
 
 /// A scan with further residuals beside it.

@@ -1,0 +1,329 @@
+//! The search of several scans of one material together.
+
+use brdfit_core::geometry::Sample;
+use brdfit_core::joint::Joint;
+use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
+use brdfit_core::model::Parameter;
+use brdfit_core::search::{Found, search, search_from};
+use brdfit_core::uncertainty::Uncertainty;
+use rayon::prelude::*;
+
+use super::beside::{Beside, Rows, is_above};
+use super::setup::Setup;
+use super::{calibration, single};
+use crate::error::FitError;
+use crate::layout::Layout;
+use crate::options::FitOptions;
+use crate::passes::Kernel;
+use crate::until::Watched;
+use crate::values::Values;
+
+/// Scans at most.
+pub const SCANS: usize = 8;
+
+/// A fit of several scans.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Fitted {
+    /// Which of the model's parameters are shared.
+    pub shared: Vec<bool>,
+    /// The parameters of each scan.
+    pub scans: Vec<Values>,
+    /// Their standard errors (none on a bound, or if undetermined: the error is larger than the parameter, or for kappa than 1).
+    pub errors: Vec<Vec<Option<f64>>>,
+    /// Sum of squared residuals of ln f over all scans, and of priors.
+    pub cost: f64,
+    /// The part of it that is that of the samples.
+    pub of_samples: f64,
+    /// The same of fits of each scan on its own.
+    pub separate: f64,
+    /// Samples of all scans.
+    pub samples: usize,
+    /// Parameters that are free.
+    pub parameters: usize,
+}
+
+/// Priors, each of a shared parameter once and of another for each scan.
+pub fn prior_rows(scans: usize, shared: &[bool], options: &FitOptions) -> usize {
+    let counts = |place: usize| if shared[place] { 1 } else { scans };
+    options.with_prior().map(counts).sum()
+}
+
+/// Coordinates at most, with every parameter of the largest model each scan's own.
+const COORDINATES: usize = 8 * SCANS;
+
+pub fn run<const P: usize>(
+    scans: &[&Kernel<f64, P>],
+    own: &[Parameter; P],
+    shared: &[bool],
+    options: &FitOptions,
+    all: &[&[Sample<f64>]],
+) -> Result<Fitted, (usize, FitError)> {
+    let until = options.until;
+    let watched: Vec<_> = scans.iter().map(|&scene| Watched { scene, until }).collect();
+    let scans: &[&Kernel<f64, P>] = &watched.iter().map(|scan| scan as _).collect::<Vec<_>>();
+    let layout = Layout::new(own, options.model);
+    let scene = Scene {
+        scans,
+        layout: &layout,
+        shared,
+        options,
+        all,
+    };
+    let is_shared: [bool; P] = layout.places.map(|place| shared[place]);
+    let mut setup = Setup {
+        sigma: options.instrument.sigma.unwrap_or(1.0),
+        ..Setup::default()
+    };
+    for place in (0..shared.len()).filter(|&place| shared[place]) {
+        setup.share[place] = (1.0 / scans.len() as f64).sqrt();
+    }
+    let samples = counted(all);
+    let rows = samples + prior_rows(all.len(), shared, options);
+    let problem = Joint::new(scans, is_shared);
+    let bounds = problem.bounds::<f64, COORDINATES>(&layout.bounds(options));
+    let free = (0..COORDINATES).filter(|&k| bounds.lower[k] < bounds.upper[k]).count();
+    let mut found = scene.search(&setup);
+    if options.prior_count() > 0 && options.instrument.sigma.is_none() {
+        setup.settle(
+            |setup, again| {
+                if again {
+                    found = scene.search(setup);
+                } else {
+                    found.best = scene.descend(setup, found.best.x);
+                }
+                scene.costs(setup, &found.best.x)[0]
+            },
+            rows.saturating_sub(free),
+        );
+    }
+    if options.instrument.limit.is_some() && !until.is_over() {
+        let [of_samples, priors, _] = scene.costs(&setup, &found.best.x);
+        let kept = setup.wall(of_samples + priors, |setup| {
+            if setup.steep > 0.0 {
+                found = scene.search(setup);
+            }
+            scene.above(&found.best.x)
+        });
+        if !kept {
+            return Err((all.len(), FitError::Limit));
+        }
+    }
+    if until.is_over() {
+        return Err((all.len(), FitError::Interrupted));
+    }
+    let best = &found.best;
+    let [_, priors, limit] = scene.costs(&setup, &best.x);
+    let mut at = best.at;
+    at.cost -= limit;
+    let uncertainty = Uncertainty::new(&at, &best.x, &bounds, rows);
+    let error = |s: usize, k: usize| {
+        let place = problem.place(s, k);
+        let value = best.x[place];
+        let free = bounds.lower[place] < value && value < bounds.upper[place];
+        let x = problem.of(&best.x, s);
+        let error = uncertainty.held.standard_error(place) * layout.slopes(&x)[k];
+        let value = layout.values(&x)[layout.places[k]];
+        // kappa may be 0 where it is determined.
+        let size = if own[k].is_squared() { value.max(1.0) } else { value };
+        let of_scale = if own[k].is_weight() {
+            options.instrument.scale_uncertainty * value
+        } else {
+            0.0
+        };
+        (free && error <= size).then_some(calibration::beside(error, of_scale))
+    };
+    let errors = |s: usize| {
+        let places = 0..options.model.parameters.len();
+        places
+            .map(|place| layout.coordinate(place).and_then(|k| error(s, k)))
+            .collect()
+    };
+    Ok(Fitted {
+        shared: shared.to_vec(),
+        scans: (0..scans.len())
+            .map(|s| layout.values(&problem.of(&best.x, s)))
+            .collect(),
+        errors: (0..scans.len()).map(errors).collect(),
+        cost: at.cost,
+        of_samples: at.cost - priors,
+        separate: found.separate,
+        samples,
+        parameters: free,
+    })
+}
+
+/// All scans with what stands beside them.
+struct Scene<'a, const P: usize> {
+    scans: &'a [&'a Kernel<'a, f64, P>],
+    layout: &'a Layout<'a, P>,
+    shared: &'a [bool],
+    options: &'a FitOptions,
+    all: &'a [&'a [Sample<f64>]],
+}
+
+/// The best joint fit.
+struct Best {
+    best: Fit<f64, COORDINATES>,
+    /// Sum of squared residuals of the samples, each scan on its own.
+    separate: f64,
+}
+
+impl<const P: usize> Scene<'_, P> {
+    fn is_shared(&self) -> [bool; P] {
+        self.layout.places.map(|place| self.shared[place])
+    }
+
+    /// The residuals beside each scan.
+    fn rows(&self, setup: &Setup) -> Vec<Rows<'_, P>> {
+        let each = self.all.iter();
+        each.map(|samples| Rows::new(self.layout, self.options, setup, samples))
+            .collect()
+    }
+
+    /// Does `with` with the scans and what stands beside them.
+    fn with<T>(&self, setup: &Setup, with: impl FnOnce(&[&Kernel<f64, P>], &[Rows<P>]) -> T) -> T {
+        let rows = self.rows(setup);
+        let beside: Vec<Beside<f64, P>> = self
+            .scans
+            .iter()
+            .zip(&rows)
+            .map(|(scene, rows)| Beside { scene: *scene, rows })
+            .collect();
+        let pairs = self.scans.iter().zip(&beside);
+        let kernels: Vec<&Kernel<f64, P>> = pairs
+            .map(|(scan, beside)| {
+                if beside.rows.is_empty() {
+                    *scan
+                } else {
+                    beside as &Kernel<f64, P>
+                }
+            })
+            .collect();
+        with(&kernels, &rows)
+    }
+
+    fn search(&self, setup: &Setup) -> Best {
+        let lm = Options::default();
+        let one = self.layout.bounds::<f64>(self.options);
+        self.with(setup, |scans, rows| {
+            let separate: Vec<Found<f64, P>> = scans
+                .par_iter()
+                .map(|scan| search(single(*scan), &one, self.options.seed, starts(self.options), &lm))
+                .collect();
+            let problem = Joint::new(scans, self.is_shared());
+            let together = Together {
+                scans,
+                is_shared: self.is_shared(),
+                one,
+                bounds: problem.bounds::<f64, COORDINATES>(&one),
+                separate: &separate,
+                options: self.options,
+            };
+            let beside = separate.iter().zip(rows).map(|(found, rows)| {
+                let (priors, limit) = rows.costs(&found.best.x);
+                found.best.at.cost - priors - limit
+            });
+            Best {
+                best: together.search(&problem),
+                separate: beside.sum(),
+            }
+        })
+    }
+
+    fn descend(&self, setup: &Setup, x: [f64; COORDINATES]) -> Fit<f64, COORDINATES> {
+        self.with(setup, |scans, _| {
+            let problem = Joint::new(scans, self.is_shared());
+            let bounds = problem.bounds::<f64, COORDINATES>(&self.layout.bounds(self.options));
+            lm::fit(&problem, &bounds, x, &Options::default())
+        })
+    }
+
+    /// Sum of squared residuals of the samples, of priors, and of what is above its limit.
+    fn costs(&self, setup: &Setup, x: &[f64; COORDINATES]) -> [f64; 3] {
+        let problem = Joint::new(self.scans, self.is_shared());
+        let mut sums = [problem.cost(x), 0.0, 0.0];
+        for (s, rows) in self.rows(setup).iter().enumerate() {
+            let (priors, limit) = rows.costs(&problem.of(x, s));
+            sums[1] += priors;
+            sums[2] += limit;
+        }
+        sums
+    }
+
+    /// Is what is limited above 1 in any scan?
+    fn above(&self, x: &[f64; COORDINATES]) -> bool {
+        let problem = Joint::new(self.scans, self.is_shared());
+        let mut each = self.all.iter().enumerate();
+        each.any(|(s, samples)| {
+            let values = self.layout.values(&problem.of(x, s));
+            is_above(self.options, values, samples)
+        })
+    }
+}
+
+/// Starts of each search; one where the fit is not wanted any more, as a hundred searches that end after their candidates take seconds.
+fn starts(options: &FitOptions) -> u32 {
+    if options.until.is_over() { 1 } else { options.starts() }
+}
+
+/// Samples that count.
+pub fn counted(all: &[&[Sample<f64>]]) -> usize {
+    let samples = all.iter().copied().flatten();
+    samples.filter(|sample| sample.weight != 0.0).count()
+}
+
+/// Minima of a scan that tell where to hold the shared parameters.
+const MINIMA: usize = 4;
+/// How often the joint fit is searched from its own shared parameters, at most.
+const LOOPS: usize = 4;
+
+/// Scans with what each says on its own.
+struct Together<'a, const P: usize> {
+    scans: &'a [&'a Kernel<'a, f64, P>],
+    is_shared: [bool; P],
+    one: Bounds<f64, P>,
+    bounds: Bounds<f64, COORDINATES>,
+    separate: &'a [Found<f64, P>],
+    options: &'a FitOptions,
+}
+
+impl<'a, const P: usize> Together<'a, P> {
+    /// The best joint fit.
+    fn search(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>) -> Fit<f64, COORDINATES> {
+        let bests = || self.separate.iter().map(|found| found.best.x);
+        let mean: [f64; COORDINATES] = problem.join(bests());
+        let mut held = vec![problem.of(&mean, 0)];
+        for found in self.separate {
+            held.extend(found.minima.as_slice().iter().take(MINIMA).map(|minimum| minimum.x));
+        }
+        let ends = held.par_iter().map(|held| self.from(problem, held));
+        let ends: Vec<Fit<f64, COORDINATES>> = ends.collect();
+        let least = |fits: Vec<Fit<f64, COORDINATES>>| fits.into_iter().min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
+        let mut best = least(ends).expect("the mean is a start");
+        for _ in 0..LOOPS {
+            let again = self.from(problem, &problem.of(&best.x, 0));
+            if !(again.at.cost < best.at.cost * (1.0 - 1e-9)) {
+                break;
+            }
+            best = again;
+        }
+        best
+    }
+
+    /// The joint fit from the best that each scan can do with the shared parameters held where `held` has them.
+    fn from(&self, problem: &Joint<'a, &'a Kernel<'a, f64, P>, P>, held: &[f64; P]) -> Fit<f64, COORDINATES> {
+        let lm = Options::default();
+        let mut bounds = self.one;
+        for k in (0..P).filter(|&k| self.is_shared[k]) {
+            (bounds.lower[k], bounds.upper[k]) = (held[k], held[k]);
+        }
+        let each = self.scans.par_iter().zip(self.separate).map(|(scan, found)| {
+            let known: Vec<[f64; P]> = found.minima.as_slice().iter().map(|minimum| minimum.x).collect();
+            let (seed, starts) = (self.options.seed, starts(self.options));
+            search_from(single(*scan), &bounds, seed, starts, &known, &lm).best.x
+        });
+        let each: Vec<[f64; P]> = each.collect();
+        lm::fit(problem, &self.bounds, problem.join(each.into_iter()), &lm)
+    }
+}

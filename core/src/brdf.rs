@@ -13,7 +13,7 @@ use crate::pack::Pack;
 use crate::real::Real;
 
 pub use terms::{ABSORBING, ALL, DIFFUSE, NAMES, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME, has, parameters, slot};
-pub(crate) use terms::{EVERY, get};
+pub(crate) use terms::{EVERY, get, place, places};
 use terms::{M_2, M_V, Q, RHO_2};
 
 /// The six parameters of Eq. 14, all dimensionless; those of absent terms are 0, and n is 1.

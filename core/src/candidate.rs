@@ -15,7 +15,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
     fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         let mut x = bounds.lower;
         let shapes = Shapes {
-            roles: const { propose::roles(&M::PARAMETERS) },
+            roles: const { &propose::roles(&M::PARAMETERS) },
+            has_index: Self::HAS_INDEX,
             spread: R::table(
                 const { &propose::single(&propose::spreads(&M::PARAMETERS)) },
                 const { &propose::double(&propose::spreads(&M::PARAMETERS)) },
@@ -122,12 +123,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             return;
         }
         let roles = const { propose::roles(&M::PARAMETERS) };
-        let (best, rank) = box_least_squares(&sums, &roles, bounds);
-        for k in 0..P {
-            if roles[k] == Role::Weight {
-                x[k] = best[k];
-            }
-        }
+        let rank = box_least_squares(&sums, &roles, bounds, x);
         let again = candidate.waits == Waits::Fading && M::fade(x, bounds);
         *x = bounds.clamp(*x);
         candidate.rank = rank;
@@ -219,39 +215,38 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
     false
 }
 
-/// The weights within bounds that solve `hessian weights = gradient` best, and their sum of squares, less what it is at the lower bounds; what is no weight is 0.
+/// Sets the weights of `x` to those within bounds that solve `hessian weights = gradient` best; their sum of squares, less what it is at the lower bounds.
 fn box_least_squares<R: Real, const P: usize>(
     sums: &Linearization<R, P>,
     roles: &[Role; P],
     bounds: &Bounds<R, P>,
-) -> ([R; P], R) {
-    let mut a = [[R::ZERO; P]; P];
+    x: &mut [R; P],
+) -> R {
+    // What is no weight has no room, and zeros in the sums.
+    let mut a = sums.hessian;
     let mut g = [R::ZERO; P];
-    let mut lower = [R::ZERO; P];
     let mut room = [R::ZERO; P];
     for i in 0..P {
-        a[i][i] = R::ONE;
         if roles[i] == Role::Weight {
-            lower[i] = bounds.lower[i];
             room[i] = bounds.upper[i] - bounds.lower[i];
-            a[i] = sums.hessian[i];
             a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
+            // The box is seen from its lower corner.
             g[i] = -sums.gradient[i];
-        }
-    }
-    // The box is seen from its lower corner.
-    for i in 0..P {
-        for j in 0..P {
-            g[i] += a[i][j] * lower[j];
+            for j in 0..P {
+                g[i] += a[i][j] * bounds.lower[j];
+            }
         }
     }
     let step = boxqp::minimize(&a, &g, &[R::ZERO; P], &room);
     let mut rank = R::ZERO;
     for i in 0..P {
+        if roles[i] == Role::Weight {
+            x[i] = bounds.lower[i] + step[i];
+        }
         rank += step[i] * (g[i] + g[i]);
         for j in 0..P {
             rank += step[i] * a[i][j] * step[j];
         }
     }
-    (core::array::from_fn(|i| lower[i] + step[i]), rank)
+    rank
 }

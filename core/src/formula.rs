@@ -248,11 +248,11 @@ impl<R: Real, F: Formula<P>, const P: usize> Model<R, P, COLUMNS> for Own<F> {
     }
 
     fn seen(blocks: &[Block<R, LANES, COLUMNS>]) -> Seen<R> {
-        let peak = peak(blocks, 5, 6);
-        Seen {
-            finest: R::of(FINEST) * peak.third.sqrt(),
-            peaks: Pack::splat(peak.cos_theta_d),
-            near: [peak.near; 2],
-        }
+        let mut seen = Seen::nothing();
+        let (cos_theta_d, third) = peak(blocks, [5, 6], &mut seen.near[0]);
+        seen.near[1] = seen.near[0];
+        seen.peaks = Pack::splat(cos_theta_d);
+        seen.finest = R::of(FINEST) * third.sqrt();
+        seen
     }
 }

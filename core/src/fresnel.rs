@@ -1,7 +1,6 @@
 //! Unpolarised Fresnel reflectance of a complex index n - i kappa, with its derivatives.
 
 use crate::pack::Pack;
-use crate::real::ALONE;
 use crate::real::Real;
 
 /// The index of refraction, and what follows from it alone.
@@ -29,7 +28,8 @@ pub(crate) struct Fresnel<R, const K: usize> {
 }
 
 impl<R: Real> Index<R> {
-    #[inline(always)]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn new(n: R, kappa2: R) -> Self {
         let n2 = n * n;
         let delta = (n - R::ONE) * (n + R::ONE) - kappa2;
@@ -51,6 +51,16 @@ impl<R: Real> Index<R> {
         self.contrast == R::ZERO
     }
 
+    /// F, dF/d(n^2) and dF/d(kappa^2) of each of some cosines; of the derivatives, without `gradient`, nothing.
+    #[cfg_attr(target_os = "none", inline(never))]
+    #[cfg_attr(not(target_os = "none"), inline(always))]
+    pub fn reflect_each(&self, c: &[R], gradient: bool, places: &mut [[R; 3]]) {
+        for (&c, place) in c.iter().zip(places) {
+            let Fresnel { f, d_n2, d_kappa2 } = self.reflect(Pack([c]), gradient);
+            *place = [f.0[0], d_n2.0[0], d_kappa2.0[0]];
+        }
+    }
+
     /// F at c = cos theta_d, `0 < c <= 1`, result 0 to 1, and if `gradient` its derivatives.
     ///
     /// r_s = (c - p)/(c + p) and r_p = r_s t with t = (p c - s^2)/(p c + s^2), where p = sqrt(eps - s^2) = a - i b; F = |r_s|^2 (1 + |t|^2)/2.
@@ -58,31 +68,6 @@ impl<R: Real> Index<R> {
     /// With h = N/p = dp/dN of the complex index N = n - i kappa, conj(r_s) dr_s/dp = 2 c conj(eps - 1) / u^2, and likewise for t.
     #[inline(always)]
     pub fn reflect<const K: usize>(&self, c: Pack<R, K>, gradient: bool) -> Fresnel<R, K> {
-        if !ALONE {
-            return self.reflect_pack(c, gradient);
-        }
-        let mut all = Fresnel {
-            f: c,
-            d_n2: c,
-            d_kappa2: c,
-        };
-        for k in 0..K {
-            let one = self.reflect_one(c.0[k], gradient);
-            all.f.0[k] = one.f.0[0];
-            all.d_n2.0[k] = one.d_n2.0[0];
-            all.d_kappa2.0[k] = one.d_kappa2.0[0];
-        }
-        all
-    }
-
-    #[inline(never)]
-    fn reflect_one(&self, c: R, gradient: bool) -> Fresnel<R, 1> {
-        self.reflect_pack(Pack([c]), gradient)
-    }
-
-    /// [`Index::reflect`], compiled into its caller.
-    #[inline(always)]
-    pub fn reflect_pack<const K: usize>(&self, c: Pack<R, K>, gradient: bool) -> Fresnel<R, K> {
         let (half, two) = (R::of(0.5), R::of(2.0));
         let c2 = c * c;
         let s2 = c2.map(|c2| R::ONE - c2);

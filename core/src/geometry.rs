@@ -96,7 +96,7 @@ impl<R: Real> Geometry<R> {
     /// # Errors
     /// [`SampleError::NotFinite`] and [`SampleError::BeyondHorizon`].
     pub fn new(theta_i: R, theta_s: R, delta_phi: R) -> Result<Self, SampleError> {
-        if !(theta_i.is_finite() && theta_s.is_finite() && delta_phi.is_finite()) {
+        if ![theta_i, theta_s, delta_phi].iter().all(|angle| angle.is_finite()) {
             return Err(SampleError::NotFinite);
         }
         let half = R::of(0.5);
@@ -191,6 +191,7 @@ impl<R: Real> Observation<R> {
     ///
     /// # Errors
     /// [`SampleError`] tells what is wrong with the sample.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn new(sample: &Sample<R>) -> Result<Self, SampleError> {
         let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi)?;
         Self::at(geometry, sample.brdf, sample.weight)
@@ -203,7 +204,7 @@ impl<R: Real, G> Observation<R, G> {
     /// # Errors
     /// [`SampleError::NotFinite`] and [`SampleError::NotPositive`].
     pub fn at(geometry: G, brdf: R, weight: R) -> Result<Self, SampleError> {
-        if !(brdf.is_finite() && weight.is_finite()) {
+        if ![brdf, weight].iter().all(|number| number.is_finite()) {
             return Err(SampleError::NotFinite);
         }
         if !(brdf >= R::MIN_POSITIVE) {
@@ -230,15 +231,23 @@ pub struct Block<R, const L: usize = LANES, const C: usize = 6> {
 
 impl<R: Real, const L: usize, const C: usize> Block<R, L, C> {
     /// A block without observations: each lane in directions where every model computes ordinary numbers.
-    pub const EMPTY: Self = Block {
-        columns: [[R::ONE; L]; C],
-        ln_f: [R::ZERO; L],
-        weight: [R::ZERO; L],
-    };
+    pub const EMPTY: Self = Self::empty();
 
     /// A block without observations.
     pub const fn empty() -> Self {
-        Self::EMPTY
+        let mut block = Block {
+            columns: [[R::ZERO; L]; C],
+            ln_f: [R::ZERO; L],
+            weight: [R::ZERO; L],
+        };
+        // A loop, where an image would otherwise hold a whole block.
+        let columns = block.columns.as_flattened_mut();
+        let mut k = 0;
+        while k < columns.len() {
+            columns[k] = R::ONE;
+            k += 1;
+        }
+        block
     }
 
     /// The first `L` of `observations`, in order.
@@ -254,8 +263,8 @@ impl<R: Real, const L: usize, const C: usize> Block<R, L, C> {
     pub fn set<G: Copy + Into<[R; C]>>(&mut self, lane: usize, observation: &Observation<R, G>) {
         if lane < L {
             let numbers: [R; C] = observation.geometry.into();
-            for (column, number) in self.columns.iter_mut().zip(numbers) {
-                column[lane] = number;
+            for c in 0..C {
+                self.columns[c][lane] = numbers[c];
             }
             self.ln_f[lane] = observation.ln_f;
             self.weight[lane] = observation.weight;

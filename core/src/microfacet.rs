@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::bend::{FINEST, bend, peak, ratio};
-use crate::brdf::{Brdf, EVERY, SECOND, Shifts, WEIGHT, get, has, lobes, pair, slot};
+use crate::brdf::{Brdf, EVERY, SECOND, Shifts, WEIGHT, get, has, lobes, pair, place, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lm::Bounds;
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
@@ -64,6 +64,17 @@ const fn parameters_of<const P: usize>(terms: u8) -> [Parameter; P] {
             list[slot(terms, index)] = PARAMETERS[index];
         }
         index += 1;
+    }
+    list
+}
+
+/// Place of the weight of each lobe, `usize::MAX` for one that is not there, and which pair of facet angles the lobe has.
+const fn weights_of_lobes(terms: u8) -> [(usize, usize); WEIGHT.len()] {
+    let mut list = [(0, 0); WEIGHT.len()];
+    let mut lobe = 0;
+    while lobe < list.len() {
+        list[lobe] = (place(terms, WEIGHT[lobe]), pair(lobe));
+        lobe += 1;
     }
     list
 }
@@ -134,57 +145,60 @@ where
     }
 
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
-        let [surface, volume] = [0, 1].map(|pair| peak(blocks, pair, 2 + pair));
-        let nearest = surface.third.min(volume.third);
-        Seen {
-            finest: R::of(FINEST) * nearest.sqrt(),
-            peaks: Pack([surface.cos_theta_d, volume.cos_theta_d]),
-            near: [surface.near, volume.near],
+        let mut seen = Seen::nothing();
+        let mut third = R::MAX;
+        for pair in 0..2 {
+            let (cos_theta_d, of_pair) = peak(blocks, [pair, 2 + pair], &mut seen.near[pair]);
+            seen.peaks.0[pair] = cos_theta_d;
+            third = third.min(of_pair);
         }
+        seen.finest = R::of(FINEST) * third.sqrt();
+        seen
     }
 
     fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        if let Some((rho_d, &old)) = place(0).and_then(|k| x.get_mut(k).zip(like.get(k))) {
-            *rho_d = old;
-        }
         let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
         let ratio = ratio(index(like), index(x), seen.peaks);
-        for (k, pair) in WEIGHT.map(place).into_iter().zip([0, 1, 2].map(pair)) {
-            if let Some((rho, &old)) = k.and_then(|k| x.get_mut(k).zip(like.get(k))) {
-                *rho = old * ratio.0[pair % 2];
+        if let Some(rho_d) = x.get_mut(const { place(TERMS, 0) }) {
+            *rho_d = get(TERMS, like, 0, R::ZERO);
+        }
+        for &(place, pair) in const { &weights_of_lobes(TERMS) } {
+            if let Some((rho, &old)) = x.get_mut(place).zip(like.get(place)) {
+                *rho = old * ratio[pair % 2];
             }
         }
     }
 
     /// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
     fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
-        // So the compiler sees that no index is out of range.
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index)).filter(|&k| k < P);
+        let weights = const { &weights_of_lobes(TERMS) };
         let mut part = R::ZERO;
-        for k in WEIGHT.into_iter().filter_map(place) {
-            part = part.max(x[k] / bounds.upper[k]);
+        for &(place, _) in weights {
+            if let Some((&rho, &most)) = x.get(place).zip(bounds.upper.get(place)) {
+                part = part.max(rho / most);
+            }
         }
         if !(part > R::ZERO) {
             return false;
         }
         // Not so far up that F is no longer in proportion.
         let part = part.min(R::of(10.0));
-        if let Some(n) = place(4) {
-            x[n] = R::ONE + (x[n] - R::ONE) * part.sqrt();
+        if let Some(n) = x.get_mut(const { place(TERMS, 4) }) {
+            *n = R::ONE + (*n - R::ONE) * part.sqrt();
         }
-        if let Some(kappa2) = place(5) {
-            x[kappa2] *= part;
+        if let Some(kappa2) = x.get_mut(const { place(TERMS, 5) }) {
+            *kappa2 *= part;
         }
-        for k in WEIGHT.into_iter().filter_map(place) {
-            x[k] = (x[k] / part).min(bounds.upper[k]);
+        for &(place, _) in weights {
+            if let Some((rho, &most)) = x.get_mut(place).zip(bounds.upper.get(place)) {
+                *rho = (*rho / part).min(most);
+            }
         }
         true
     }
 
     fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
-        let place = |index: usize| has(TERMS, index).then(|| slot(TERMS, index));
-        let weights = WEIGHT.map(place).into_iter().zip([0, 1, 2].map(pair));
-        bend(x, step, to, [place(4), place(5)], weights, seen.peaks)
+        let index = const { [place(TERMS, 4), place(TERMS, 5)] };
+        bend(x, step, to, index, const { &weights_of_lobes(TERMS) }, seen.peaks)
     }
 }

@@ -97,13 +97,14 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
         };
         // Joined with one minimum, a better fit may come within 1 % of the next.
         while let Some(place) = self.list.iter().position(|old| same(old, &new))
-            && let Some(old) = take(&mut self.list, place)
+            && let [.., old] = to_end(&mut self.list, place)
         {
             new.hits += old.hits;
             new.first_start = new.first_start.min(old.first_start);
             if old.cost <= new.cost {
                 (new.x, new.cost) = (old.x, old.cost);
             }
+            self.list.truncate(self.list.len() - 1);
         }
         insert(&mut self.list, &new);
     }
@@ -119,33 +120,41 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
 
 /// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within 1 % of cost, and 5 % of each coordinate.
 pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<R, P>) -> bool {
-    let near = |(&x, &y): (&R, &R)| close(x, y, R::of(0.05)) || (x - y).abs() < R::of(1e-3);
-    close(cost, fit.at.cost, R::of(0.01)) && x.iter().zip(&fit.x).all(near)
+    close(cost, fit.at.cost, R::of(0.01)) && all_close(x, &fit.x, R::of(0.05), R::of(1e-3))
 }
 
-/// Takes an item out of a list; the others stay in order.
-pub(crate) fn take<R: Real, const P: usize>(list: &mut VecView<Minimum<R, P>>, place: usize) -> Option<Minimum<R, P>> {
-    let mut rest = list.get_mut(place..)?;
+fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
+    close(a.cost, b.cost, R::of(0.01)) || all_close(&a.x, &b.x, R::of(1e-3), R::ZERO)
+}
+
+/// Are all numbers close, or less than `least` apart?
+#[cfg_attr(target_os = "none", inline(never))]
+fn all_close<R: Real>(x: &[R], y: &[R], part: R, least: R) -> bool {
+    let near = |(&x, &y): (&R, &R)| close(x, y, part) || (x - y).abs() < least;
+    x.iter().zip(y).all(near)
+}
+
+/// Moves an item of a list to its end; the others stay in order.
+#[cfg_attr(target_os = "none", inline(never))]
+pub(crate) fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place: usize) -> &mut [Minimum<R, P>] {
+    let mut rest = list.get_mut(place..).unwrap_or_default();
     while let [first, others @ ..] = rest
         && let Some(next) = others.first_mut()
     {
         core::mem::swap(first, next);
         rest = others;
     }
-    list.pop()
-}
-
-fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
-    close(a.cost, b.cost, R::of(0.01)) || a.x.iter().zip(&b.x).all(|(&x, &y)| close(x, y, R::of(1e-3)))
+    list
 }
 
 /// Puts `new` into its place in a list in order of cost; where there is no room, the last is left out.
+#[cfg_attr(target_os = "none", inline(never))]
 pub(crate) fn insert<R: Real, const P: usize>(list: &mut VecView<Minimum<R, P>>, new: &Minimum<R, P>) {
     if list.is_full() {
         match list.last() {
-            Some(last) if less(new.cost, last.cost) => list.pop(),
+            Some(last) if less(new.cost, last.cost) => list.truncate(list.len() - 1),
             _ => return,
-        };
+        }
     }
     // There is room.
     let _ = list.push(*new);

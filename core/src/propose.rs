@@ -41,7 +41,9 @@ const NUMBERS: usize = 8;
 
 /// What proposals need to know of the parameters of a model.
 pub(crate) struct Shapes<R: Real, const P: usize> {
-    pub roles: [Role; P],
+    pub roles: &'static [Role; P],
+    /// Is there an index of refraction among them?
+    pub has_index: bool,
     /// See [`Parameter::spread`].
     pub spread: &'static [[R; 2]; P],
 }
@@ -128,7 +130,7 @@ pub(crate) fn shapes<R: Real, const P: usize>(
             }
         }
     }
-    if !shapes.roles.contains(&Role::Index) {
+    if !shapes.has_index {
         if let Region::Index(like) = region {
             vary(x, shapes, bounds, like, &own);
         }
@@ -172,13 +174,14 @@ fn slope<R: Real, const P: usize>(
 }
 
 /// The slope m of a peak of which two samples see nothing else: m^2 is the difference of tan^2 theta_h over that of ln f.
+#[cfg_attr(target_os = "none", inline(never))]
 fn pair<R: Real>(seen: &Seen<R>, [lobe, first, second]: [R; 3]) -> Option<R> {
     let near = &seen.near[usize::from(lobe > R::of(0.7))];
     // The first is more often one of the nearest.
-    let pick = |u: R| near[usize::from((u * R::from(NEAR as u16)).whole()).min(NEAR - 1)];
+    let pick = |u: R| near[usize::from((u * R::from(NEAR as u16)).whole()) % NEAR];
     let (a, b) = (pick(first * first), pick(second));
     let m2 = (b.0 - a.0) / (a.1 - b.1);
-    (m2 > R::ZERO && m2.is_finite()).then(|| m2.sqrt())
+    (m2 > R::ZERO && m2 <= R::MAX).then(|| m2.sqrt())
 }
 
 /// A value of a parameter at `u` of its range, from 0 to 1; evenly in the logarithm if it is above 0.
@@ -237,7 +240,7 @@ fn index<R: Real, const P: usize>(
         };
     }
     if fades {
-        fade_by_n(x, &shapes.roles, bounds);
+        fade_by_n(x, shapes.roles, bounds);
     }
     fades
 }

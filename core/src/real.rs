@@ -8,6 +8,8 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use crate::pack::Pack;
 
+mod small;
+
 /// `f32` or `f64`.
 ///
 /// Functions whose bits would differ if the standard library's were taken for them have names of their own: `x.exp()` of an `f64` is always the standard library's, `x.portable_exp()` always this one.
@@ -336,7 +338,8 @@ impl Real for f32 {
     }
     #[inline(always)]
     fn whole(self) -> u16 {
-        self as u16
+        // Processors limit to 32 bits by themselves.
+        self as u32 as u16
     }
     #[inline(always)]
     fn table<const K: usize, const N: usize>(
@@ -393,7 +396,7 @@ impl Real for f32 {
         y + y * (h * (h * 0.375 + 0.5))
     }
     fn sqrt(self) -> Self {
-        libm::sqrtf(self)
+        if ALONE { small::sqrt(self) } else { libm::sqrtf(self) }
     }
     // As in f64; the series have the least largest relative error, 4e-9 and 2e-10 of the result, by Remez's exchange.
     fn portable_sin_cos(self) -> (Self, Self) {
@@ -415,6 +418,7 @@ impl Real for f32 {
     fn portable_atan(self) -> f32 {
         libm::atanf(self)
     }
+    #[cfg_attr(target_os = "none", inline(never))]
     fn is_finite(self) -> bool {
         f32::is_finite(self)
     }

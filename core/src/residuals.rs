@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use crate::brdf::{Params, get, has, slot};
+use crate::brdf::{Params, get, places};
 use crate::geometry::{Block, LANES, Observation, Sample, SampleError};
 use crate::lm::{Bounds, Linearization, Problem};
 use crate::microfacet::Microfacet;
@@ -38,11 +38,9 @@ impl<R: Real, const TERMS: u8, const P: usize> Scan<'_, R, TERMS, P> {
         let mut x = [R::ZERO; P];
         let mut all = params.to_array();
         all[5] *= all[5];
-        for (index, value) in all.into_iter().enumerate() {
-            if has(TERMS, index)
-                && let Some(place) = x.get_mut(slot(TERMS, index))
-            {
-                *place = value;
+        for (&place, &value) in const { &places(TERMS) }.iter().zip(&all) {
+            if let Some(x) = x.get_mut(place) {
+                *x = value;
             }
         }
         x
@@ -94,6 +92,7 @@ pub fn ln_f<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(x: &[R; 
 
 impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'a, R, M, P, C> {
     /// The scan whose observations are in `blocks`.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn new(blocks: &'a [Block<R, LANES, C>]) -> Self {
         Residuals {
             blocks,

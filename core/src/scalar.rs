@@ -42,19 +42,18 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             Want::Columns => Self::WEIGHTS_END,
         };
         let mut parts = [Linearization::zero(); PARTS];
+        let mut place = 0;
         for lane in 0..SUMS {
-            let mut waiting = parts.get_mut(..=lane.count_ones() as usize).unwrap_or_default();
-            if let Some(part) = waiting.last_mut() {
+            if let Some(part) = parts.get_mut(place) {
                 self.partial(&pass, lane, want, columns, part);
             }
             for _ in 0..lane.trailing_ones() {
-                if let [before @ .., part] = waiting {
-                    if let Some(sum) = before.last_mut() {
-                        add(sum, part, columns);
-                    }
-                    waiting = before;
+                place -= 1;
+                if let [sum, part, ..] = parts.get_mut(place..).unwrap_or_default() {
+                    add(sum, part, columns);
                 }
             }
+            place += 1;
         }
         let [mut sums, ..] = parts;
         for i in 0..P {

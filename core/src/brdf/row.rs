@@ -38,7 +38,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             let lobe = lobe(TERMS, place);
             let unit_lobes = self.unit_lobes::<1, 1, L, C>(block, place, Pack([shift]), lane);
             let cos_theta_d = block.columns[2 + pair(lobe)][lane];
-            let fresnel = self.index.reflect_pack(Pack([cos_theta_d]), gradient);
+            let fresnel = self.index.reflect(Pack([cos_theta_d]), gradient);
             d_rho[lobe] = unit_lobes.f.0[0] * fresnel.f.0[0];
             let term = self.rho[lobe] * d_rho[lobe];
             f += term;
@@ -75,7 +75,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             set::<M_2, TERMS, R, P>(row, steep(2));
             set::<Q, TERMS, R, P>(row, by_q * share);
         }
-        shift + Pack([f]).ln().0[0]
+        shift + f.portable_ln()
     }
 }
 

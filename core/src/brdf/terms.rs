@@ -61,6 +61,26 @@ pub const fn slot(terms: u8, index: usize) -> usize {
     (present(terms) & ((1 << index) - 1)).count_ones() as usize
 }
 
+/// The same, or `usize::MAX` for one that is not part of `terms`: no array has that place.
+pub(crate) const fn place(terms: u8, index: usize) -> usize {
+    if has(terms, index) {
+        slot(terms, index)
+    } else {
+        usize::MAX
+    }
+}
+
+/// The places of Eq. 14's parameters.
+pub(crate) const fn places(terms: u8) -> [usize; NAMES.len()] {
+    let mut list = [0; NAMES.len()];
+    let mut index = 0;
+    while index < list.len() {
+        list[index] = place(terms, index);
+        index += 1;
+    }
+    list
+}
+
 /// Parameter `index` of the coordinates of `terms`, or `absent`.
 #[inline(always)]
 pub(crate) fn get<R: Real, const P: usize>(terms: u8, x: &[R; P], index: usize, absent: R) -> R {

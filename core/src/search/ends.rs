@@ -25,15 +25,16 @@ const SAME: f64 = 1e-5;
 
 /// What a search has found.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(super) struct Ends<R, const P: usize, const M: usize> {
     /// The fit that ended best; of 0 passes if none has ended.
     pub best: Fit<R, P>,
-    /// Where fits have ended, best first; unlike a distinct minimum, one for each cost. `hits` are the rounds in which a fit ended there, and `first_start` is the last of them.
-    pub list: Vec<Minimum<R, P>, ENDS>,
     /// The largest cost of a candidate.
     pub poorest: R,
     /// The best short fit with other slopes than the best end.
     pub rival: Option<([R; P], R)>,
+    /// Where fits have ended, best first; unlike a distinct minimum, one for each cost. `hits` are the rounds in which a fit ended there, and `first_start` is the last of them.
+    pub list: Vec<Minimum<R, P>, ENDS>,
     pub minima: Minima<R, P, M>,
 }
 
@@ -135,21 +136,31 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
 
     /// Takes note that a fit ends in the end at `place`, or in a new one.
     fn end(&mut self, fit: &Fit<R, P>, place: Option<usize>, round: u32) {
-        let old = place.and_then(|place| minima::take(&mut self.list, place));
-        let mut end = old.unwrap_or(Minimum {
-            x: fit.x,
-            cost: fit.at.cost,
-            hits: 0,
-            first_start: 0,
-        });
-        if end.first_start < u64::from(round) {
-            (end.hits, end.first_start) = (end.hits + 1, u64::from(round));
+        let round = u64::from(round);
+        let (x, cost) = (fit.x, fit.at.cost);
+        let known = place.map(|place| minima::to_end(&mut self.list, place));
+        if let Some([.., end]) = known {
+            if end.first_start < round {
+                (end.hits, end.first_start) = (end.hits + 1, round);
+            }
+            if cost < end.cost {
+                (end.x, end.cost) = (x, cost);
+            }
+            minima::sift(&mut self.list);
+        } else {
+            let hits = u32::from(round > 0);
+            let first_start = round;
+            minima::insert(
+                &mut self.list,
+                &Minimum {
+                    x,
+                    cost,
+                    hits,
+                    first_start,
+                },
+            );
         }
-        if fit.at.cost < end.cost {
-            (end.x, end.cost) = (fit.x, fit.at.cost);
-        }
-        minima::insert(&mut self.list, &end);
-        if self.best.passes == 0 || minima::less(fit.at.cost, self.best.at.cost) {
+        if self.best.passes == 0 || minima::less(cost, self.best.at.cost) {
             self.best = *fit;
         }
     }

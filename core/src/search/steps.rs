@@ -128,13 +128,14 @@ struct Trial<R, const P: usize> {
 /// # Ok::<(), brdfit_core::geometry::SampleError>(())
 /// ```
 #[derive(Clone, Debug)]
+// In this order: what lies first is reached by shorter instructions.
+#[repr(C)]
 pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = FITS> {
     phase: Phase,
     task: Task,
-    kind: Kind,
     /// Are further rounds and variations needed to settle the scan?
     unsettled: bool,
-    seed: u64,
+    kind: Kind,
     /// How many candidates are asked for, and how many rounds and candidates of these were begun.
     candidates: u32,
     round: u32,
@@ -153,6 +154,7 @@ pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = F
     /// A fit that converges is looked at when it has made so many passes.
     until: u32,
     evaluations: Evaluations,
+    seed: u64,
     bounds: Bounds<R, P>,
     options: Options<R>,
     /// What variations vary, and its cost.
@@ -160,8 +162,8 @@ pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = F
     candidate: Candidate<R, P>,
     /// Candidates, best first: `cost` is first their rank, and `first_start` which it is.
     starts: Vec<Minimum<R, P>, TRIED>,
-    fits: Vec<Trial<R, P>, F>,
     ends: Ends<R, P, M>,
+    fits: Vec<Trial<R, P>, F>,
 }
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Default for Search<R, P, M, F> {
@@ -216,6 +218,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     }
 
     /// Begins, whatever was there before; no pass. The arguments are those of [`super::search`].
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn begin(&mut self, bounds: &Bounds<R, P>, seed: u64, candidates: u32, options: &Options<R>) {
         (self.phase, self.task, self.kind) = (Phase::Known, Task::Choose, Kind::Everywhere);
         (self.seed, self.candidates) = (seed, candidates.max(1));
@@ -244,6 +247,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     }
 
     /// Goes on by at most one pass of the scan; false if the search has ended.
+    #[cfg_attr(target_os = "none", inline(never))]
     pub fn step(&mut self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
         match self.task {
             _ if self.phase == Phase::Ended => {}
@@ -297,6 +301,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     }
 
     /// How the fits are made, but the last.
+    #[cfg_attr(target_os = "none", inline(never))]
     fn rough(&self) -> Options<R> {
         Options {
             cost_tolerance: self.options.cost_tolerance.max(R::of(ROUGH)),

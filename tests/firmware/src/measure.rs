@@ -44,6 +44,16 @@ const fn digits(text: &[u8]) -> u8 {
     value
 }
 
+unsafe extern "C" {
+    /// What every interrupt of the board leads to: `memory/mps2-an386/device.x`.
+    fn Interrupt();
+}
+
+/// The interrupts of the board, as the package of a device has them for [`cortex_m_rt`].
+#[unsafe(link_section = ".vector_table.interrupts")]
+#[unsafe(no_mangle)]
+pub static __INTERRUPTS: [unsafe extern "C" fn(); 32] = [Interrupt; 32];
+
 /// The memory of a search, which the caller owns.
 type State<R> = Search<R, P, 4, FITS>;
 
@@ -82,18 +92,18 @@ fn start<R: Real>() -> [R; P] {
 /// Samples that nobody knows go in, parameters go out.
 fn image<R: Real>() {
     let sample = black_box(Sample::in_plane(R::ZERO, R::ZERO, R::ZERO));
-    let geometry = black_box(Geometry {
+    let geometry = Geometry {
         lobes: [LobeGeometry {
             tan2_theta_h: R::ZERO,
             cos_theta_d: R::ONE,
             factor: R::ONE,
         }; 2],
-    });
+    };
     let mut blocks = [Block::<R>::empty(); scan::BLOCKS];
     for block in &mut blocks {
         for lane in 0..LANES {
             let observation = if TABLED {
-                Observation::at(geometry, sample.brdf, sample.weight)
+                Observation::at(black_box(geometry), sample.brdf, sample.weight)
             } else {
                 Observation::new(&sample)
             };

@@ -1,5 +1,7 @@
 //! The command line: one function, which the program and the tests call alike.
 
+mod usage;
+
 use std::ffi::OsString;
 use std::io::Write;
 
@@ -14,6 +16,7 @@ use crate::error::{EXIT_CODE, Error};
 use crate::input::formats;
 use crate::plain::{self, Lines};
 use crate::streams::{Ended, Streams};
+pub use usage::usage;
 
 /// Finds the parameters of microfacet BRDF models from scatterometer scans
 #[derive(Parser, Debug)]
@@ -78,30 +81,14 @@ fn with_formats(command: clap::Command) -> clap::Command {
 pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let color = color(&arguments, streams.color);
-    let parsed = command().try_get_matches_from(&arguments);
-    let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
-        Ok(cli) => cli,
+    let ended = match parsed(&arguments) {
+        Ok(cli) => started(&cli, &arguments, color, streams),
         Err(error) => return explain(&error, color, streams),
     };
-    let mut nowhere = std::io::sink();
-    // Names and cells in notes and failures come from elsewhere.
-    let mut shown = Lines(streams.errors);
-    let ended = dispatch(
-        &cli.command,
-        &arguments,
-        &mut Streams {
-            input: streams.input,
-            output: streams.output,
-            errors: if cli.quiet { &mut nowhere } else { &mut shown },
-            progress: streams.progress && !cli.quiet,
-            color,
-            quiet: cli.quiet,
-        },
-    );
     // If even standard error is closed, the exit code remains.
     match ended {
         Ok(ended) => {
-            let _ = shown.write_all(ended.why.as_bytes());
+            let _ = Lines(streams.errors).write_all(ended.why.as_bytes());
             ended.code
         }
         Err(error) => {
@@ -113,6 +100,46 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams)
             EXIT_CODE
         }
     }
+}
+
+/// The same for callers that take errors as values: what [`run`] says on standard error at its end is told to them.
+///
+/// # Errors
+/// What is wrong with arguments or input.
+pub fn call(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams) -> Result<Ended, Error> {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let color = color(&arguments, streams.color);
+    match parsed(&arguments) {
+        Ok(cli) => started(&cli, &arguments, color, streams),
+        Err(error) if error.use_stderr() => Err(usage(&error)),
+        Err(error) => {
+            explain(&error, color, streams);
+            Ok(Ended::default())
+        }
+    }
+}
+
+fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    let matches = command().try_get_matches_from(arguments)?;
+    Cli::from_arg_matches(&matches)
+}
+
+fn started(cli: &Cli, arguments: &[OsString], color: bool, streams: &mut Streams) -> Result<Ended, Error> {
+    let mut nowhere = std::io::sink();
+    // Names and cells in notes and failures come from elsewhere.
+    let mut shown = Lines(streams.errors);
+    dispatch(
+        &cli.command,
+        arguments,
+        &mut Streams {
+            input: streams.input,
+            output: streams.output,
+            errors: if cli.quiet { &mut nowhere } else { &mut shown },
+            progress: streams.progress && !cli.quiet,
+            color,
+            quiet: cli.quiet,
+        },
+    )
 }
 
 /// Are colours wanted? Also known where the other arguments make no sense.

@@ -7,11 +7,42 @@ use crate::plain::plain;
 /// Exit code of the program where input, options or files are at fault.
 pub const EXIT_CODE: u8 = 2;
 
+/// What is at fault, for callers that act on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// Options, or something else that was asked for.
+    Options,
+    /// What a file or a scan says.
+    Input,
+    /// A file or a stream that cannot be read or written.
+    File,
+    /// The samples allow no such fit.
+    Fit,
+    /// The work was no longer wanted.
+    Interrupted,
+}
+
+impl ErrorKind {
+    /// One word for other languages: `options`, `input`, `file`, `fit`, `interrupted`.
+    pub fn name(self) -> &'static str {
+        match self {
+            ErrorKind::Options => "options",
+            ErrorKind::Input => "input",
+            ErrorKind::File => "file",
+            ErrorKind::Fit => "fit",
+            ErrorKind::Interrupted => "interrupted",
+        }
+    }
+}
+
 /// Something that the user can put right.
 ///
 /// It prints as one line, `file:line:column: what; help`, as far as these are known, and as `error: what; help` where no file is at fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error {
+    /// What is at fault.
+    pub kind: ErrorKind,
     /// What is wrong.
     pub what: String,
     /// The file at fault.
@@ -25,9 +56,10 @@ pub struct Error {
 }
 
 impl Error {
-    /// An error that belongs to no file.
+    /// An error that belongs to no file, of [`ErrorKind::Options`].
     pub fn new(what: impl Into<String>) -> Self {
         Error {
+            kind: ErrorKind::Options,
             what: what.into(),
             file: None,
             line: None,
@@ -36,9 +68,23 @@ impl Error {
         }
     }
 
-    /// The same error, in `file`.
+    /// An error of [`ErrorKind::File`].
+    pub fn file(what: impl Into<String>) -> Self {
+        Error::new(what).of(ErrorKind::File)
+    }
+
+    /// The same error, of this kind.
+    pub fn of(mut self, kind: ErrorKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// The same error, in `file`, whose content is at fault unless another kind was told.
     pub fn in_file(mut self, file: impl Into<String>) -> Self {
         self.file = Some(file.into());
+        if self.kind == ErrorKind::Options {
+            self.kind = ErrorKind::Input;
+        }
         self
     }
 
@@ -129,6 +175,9 @@ mod tests {
             error.to_string(),
             "scan.csv:12:3: the BRDF is -0.1, which has no logarithm; use --drop-invalid to leave such rows out"
         );
+        assert_eq!(error.kind, ErrorKind::Input);
+        assert_eq!(Error::new("no").kind, ErrorKind::Options);
+        assert_eq!(Error::file("no").in_file("a").kind, ErrorKind::File);
         assert_eq!(Error::new("no").to_string(), "error: no");
         assert_eq!(Error::new("no").in_exception(), "no");
         assert_eq!(error.in_exception(), error.to_string());

@@ -48,7 +48,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::engine::FitError;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::plain::some_of;
 pub use about::About;
 pub use bytes::STDIN;
@@ -241,9 +241,12 @@ pub fn explain(measurement: &Measurement, error: FitError) -> Error {
                 .at_line(measurement.lines[index])
                 .help("leave out --fit-offset, or the rows out of plane")
         }
-        FitError::Limit => plain.help("widen --bounds, or leave out --conserve-energy"),
-        FitError::TooFew(..) => plain.help("measure more, or take fewer terms"),
-        FitError::NoProof(_) => plain.help("only --model beckmann has one"),
-        _ => plain,
+        FitError::Limit => plain
+            .of(ErrorKind::Fit)
+            .help("widen --bounds, or leave out --conserve-energy"),
+        FitError::TooFew(..) => plain.of(ErrorKind::Fit).help("measure more, or take fewer terms"),
+        FitError::NoProof(_) => plain.of(ErrorKind::Options).help("only --model beckmann has one"),
+        FitError::Interrupted => plain.of(ErrorKind::Interrupted),
+        _ => plain.of(ErrorKind::Options),
     }
 }

@@ -103,7 +103,7 @@ pub fn to_stream(stream: &mut dyn Write, write: impl FnOnce(&mut dyn Write) -> i
     match write(stream).and_then(|()| stream.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error
             .downcast::<Error>()
-            .unwrap_or_else(|error| Error::new(format!("standard output cannot be written: {error}")))),
+            .unwrap_or_else(|error| Error::file(format!("standard output cannot be written: {error}")))),
         _ => Ok(()),
     }
 }

@@ -218,7 +218,7 @@ fn keep_owner_and_mode(file: &File, of: &Metadata) -> io::Result<()> {
 }
 
 fn denied(path: &Path, error: &io::Error) -> Error {
-    Error::new(format!("cannot be written: {error}"))
+    Error::file(format!("cannot be written: {error}"))
         .in_file(path.display().to_string())
         .help("check that the folder is there and writable")
 }

@@ -11,7 +11,7 @@ use crate::error::FitError;
 use crate::options::{FitOptions, Precision};
 use crate::outcome::Outcome;
 use crate::passes::{Both, Kernel, blocks_of, scene, with};
-use crate::search::joint::{self, Fitted};
+use crate::search::joint::{self, JointFit};
 use crate::search::setup::Setup;
 use crate::search::watched::{self, Trace};
 use crate::search::{self, enough};
@@ -20,7 +20,7 @@ use crate::values::Values;
 /// A cost and the parameters where it is.
 type Found = Option<(f64, Values)>;
 /// A joint fit, or the place of the scan that cannot be fitted, and why.
-type Joint = Result<Fitted, (usize, FitError)>;
+type Joint = Result<JointFit, (usize, FitError)>;
 
 /// The searches of model `M`; `VECTORS` says for which instructions, as in [`FastScan`].
 pub(crate) const fn set<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Compiled {

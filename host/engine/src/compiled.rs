@@ -6,7 +6,7 @@ use crate::error::FitError;
 use crate::model::Model;
 use crate::options::FitOptions;
 use crate::outcome::Outcome;
-use crate::search::joint::Fitted;
+use crate::search::joint::JointFit;
 use crate::search::setup::Setup;
 use crate::search::watched::Trace;
 use crate::values::Values;
@@ -14,7 +14,7 @@ use crate::values::Values;
 /// A cost and the parameters where it is.
 type Found = Option<(f64, Values)>;
 /// A joint fit, or the place of the scan that cannot be fitted, and why.
-type Joint = Result<Fitted, (usize, FitError)>;
+type Joint = Result<JointFit, (usize, FitError)>;
 
 /// The searches of one model, or of one set of its terms.
 #[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]

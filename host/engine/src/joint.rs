@@ -5,7 +5,7 @@ use brdfit_core::geometry::Sample;
 use crate::error::FitError;
 use crate::options::FitOptions;
 use crate::scale::Scale;
-pub use crate::search::joint::{Fitted, SCANS};
+pub use crate::search::joint::{JointFit, SCANS};
 use crate::search::joint::{counted, prior_rows};
 use crate::{compiled, with_instrument};
 
@@ -17,7 +17,7 @@ use crate::{compiled, with_instrument};
 ///
 /// # Errors
 /// The place of the scan that cannot be fitted, and why; [`FitError::TooFew`] and [`FitError::Limit`] of all scans together come with the number of scans.
-pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
+pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<JointFit, (usize, FitError)> {
     let Some(scale) = Scale::of(all, options) else {
         return fit_ordinary(all, shared, options);
     };
@@ -28,7 +28,7 @@ pub fn fit(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Res
 }
 
 /// The same of samples of an ordinary size.
-fn fit_ordinary(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<Fitted, (usize, FitError)> {
+fn fit_ordinary(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Result<JointFit, (usize, FitError)> {
     let together = |error| (all.len(), error);
     let mut options = options.held().map_err(together)?;
     options.instrument.offsets = None;

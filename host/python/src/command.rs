@@ -3,40 +3,45 @@
 use std::ffi::OsString;
 use std::io::{Cursor, IsTerminal, stderr, stdin, stdout};
 
-use brdfit::cli::run;
+use brdfit::cli::{call, run};
+use brdfit::error::Error;
 use brdfit::interrupt;
 use brdfit::streams::Streams;
 use brdfit::until::give_up;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::options::refuse;
 use crate::watch::apart;
 
-/// Runs a command on `input` as its standard input: the exit code, standard output, and standard error.
+/// What a command prints that has `input` as its standard input.
+///
+/// # Errors
+/// `brdfit.Error`, one line.
 #[pyfunction]
-pub fn command<'py>(
-    py: Python<'py>,
-    words: Vec<OsString>,
-    input: Vec<u8>,
-) -> PyResult<(u8, Bound<'py, PyBytes>, String)> {
-    let (code, output, errors) = apart(py, move |until| {
+pub fn command<'py>(py: Python<'py>, words: Vec<OsString>, input: Vec<u8>) -> PyResult<Bound<'py, PyBytes>> {
+    let ended = apart(py, move |until| {
         give_up(until);
-        let (mut output, mut errors) = (Vec::new(), Vec::new());
+        let mut output = Vec::new();
         let words = std::iter::once(OsString::from("brdfit")).chain(words);
-        let code = run(
+        let ended = call(
             words,
             &mut Streams {
                 input: &mut Cursor::new(input),
                 output: &mut output,
-                errors: &mut errors,
+                errors: &mut std::io::sink(),
                 progress: false,
                 color: false,
                 quiet: true,
             },
         );
-        (code, output, String::from_utf8_lossy(&errors).into_owned())
+        match ended {
+            Ok(ended) if ended.code != 0 => Err(Error::new(ended.why)),
+            ended => ended.map(|_| output),
+        }
     })?;
-    Ok((code, PyBytes::new(py, &output), errors))
+    let output = ended.map_err(|error| refuse(&error))?;
+    Ok(PyBytes::new(py, &output))
 }
 
 /// The program `brdfit` on the process's own standard streams; `words` begin with its name. The exit code.

@@ -152,7 +152,7 @@ impl Work<'_> {
         let Some(first) = self.asked.first() else {
             return Ok((Vec::new(), table));
         };
-        first.on_threads(|| {
+        let all = first.on_threads(|| {
             let mut rows = Vec::with_capacity(count);
             for first in (0..count).step_by(CHUNK) {
                 let chunk = first..count.min(first + CHUNK);
@@ -164,7 +164,8 @@ impl Work<'_> {
                 }
             }
             Ok((rows, table))
-        })?
+        });
+        all.map_err(|error| error.in_exception())?
     }
 
     fn one(&self, scan: usize, until: Until, table: &Table) -> Result<Kept, String> {

@@ -6,6 +6,7 @@ use brdfit::analysis::deviations::settled;
 use brdfit::analysis::fit::{FittedScan, fit as fit_scan, prove};
 use brdfit::analysis::proof::{Goal, provable};
 use brdfit::engine::{Material, Outcome, Until};
+use brdfit::error::Error;
 use brdfit::input::Measurement;
 use brdfit::page::html;
 use brdfit::page::section::Section;
@@ -14,7 +15,6 @@ use brdfit::result;
 use brdfit_core::lm::Stop;
 use numpy::IntoPyArray;
 use numpy::ndarray::Array2;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -92,10 +92,10 @@ pub fn report(
         let section = |scan: &&Measurement| Section::new(scan, &wanted, goal.as_ref());
         let sections = || scans.iter().map(section).collect();
         let sections: Result<Vec<Section>, _> = asked.on_threads(sections)?;
-        Ok(html::page(&sections.map_err(|error| error.in_exception())?, told))
+        Ok(html::page(&sections?, told))
     };
-    let page: Result<String, String> = scoped(py, all, |_| Ok(()))?;
-    page.map_err(PyValueError::new_err)
+    let page: Result<String, Error> = scoped(py, all, |_| Ok(()))?;
+    page.map_err(|error| options::refuse(&error))
 }
 
 /// The picture of `brdfit fit --plot`: a scan with its minima, of which the first is the best; none if there are none.
@@ -131,24 +131,22 @@ fn goal<'a>((eps, boxes, seconds): Claim, interrupted: &'a (dyn Fn() -> bool + S
 
 fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -> PyResult<FittedScan> {
     let asked = provable_if(options::search(words)?, claim)?;
-    let one = |until: Until| -> Result<FittedScan, String> {
+    let one = |until: Until| -> Result<FittedScan, Error> {
         let wanted = asked.until(until);
         let (scan, fitted) = asked.for_one(|| {
             let scan = settled(scan.0.clone(), &wanted);
             let fitted = fit_scan(&scan, &wanted);
             (scan, fitted)
         })?;
-        let fitted = fitted.map_err(|error| error.in_exception())?;
+        let fitted = fitted?;
         let Some(claim) = claim else {
             return Ok(fitted);
         };
         let over = || until.is_over();
         let goal = goal(claim, &over);
-        asked
-            .on_threads(|| prove(&scan, fitted, &goal))?
-            .map_err(|error| error.in_exception())
+        asked.on_threads(|| prove(&scan, fitted, &goal))?
     };
-    let mut fitted = scoped(py, one, |_| Ok(()))?.map_err(PyValueError::new_err)?;
+    let mut fitted = scoped(py, one, |_| Ok(()))?.map_err(|error| options::refuse(&error))?;
     // Two runs give the same object.
     fitted.elapsed = None;
     if let Some(proof) = &mut fitted.proof {

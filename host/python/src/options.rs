@@ -1,6 +1,7 @@
 //! Options, as the words that the program's command line takes.
 
 use brdfit::analysis::choose::Wanted;
+use brdfit::cli::usage;
 use brdfit::engine::models::MODELS;
 use brdfit::engine::{Method, Until};
 use brdfit::error::Error;
@@ -8,7 +9,6 @@ use brdfit::input::ReadOptions;
 use brdfit::options::SearchArguments;
 use brdfit::parameters;
 use clap::Parser;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 
@@ -43,7 +43,7 @@ impl Asked {
     ///
     /// # Errors
     /// The system gives no threads.
-    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
         Ok(self.pool()?.install(work))
     }
 
@@ -51,24 +51,24 @@ impl Asked {
     ///
     /// # Errors
     /// The system gives no threads.
-    pub fn for_one<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+    pub fn for_one<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
         match &self.wanted {
             Wanted::One(options) if options.method == Method::Default => Ok(work()),
             _ => self.on_threads(work),
         }
     }
 
-    fn pool(&self) -> Result<ThreadPool, String> {
-        self.search.pool().map_err(|error| error.in_exception())
+    fn pool(&self) -> Result<ThreadPool, Error> {
+        self.search.pool()
     }
 }
 
 /// How to search, in words such as `--seed=7`.
 ///
 /// # Errors
-/// `ValueError`, one line.
+/// `brdfit.Error`, one line.
 pub fn search(words: &[String]) -> PyResult<Asked> {
-    let Searching { search } = Searching::try_parse_from(words).map_err(|error| usage(&error))?;
+    let Searching { search } = Searching::try_parse_from(words).map_err(|error| refuse(&usage(&error)))?;
     let wanted = search.wanted().map_err(|error| refuse(&error))?;
     Ok(Asked { wanted, search })
 }
@@ -76,9 +76,9 @@ pub fn search(words: &[String]) -> PyResult<Asked> {
 /// How to read, in words such as `--column=R`.
 ///
 /// # Errors
-/// `ValueError`, one line.
+/// `brdfit.Error`, one line.
 pub fn reading(words: &[String]) -> PyResult<ReadOptions> {
-    let Reading { read } = Reading::try_parse_from(words).map_err(|error| usage(&error))?;
+    let Reading { read } = Reading::try_parse_from(words).map_err(|error| refuse(&usage(&error)))?;
     Ok(read)
 }
 
@@ -98,16 +98,19 @@ pub fn names(model: &str) -> PyResult<Vec<(&'static str, &'static str, &'static 
         .collect())
 }
 
-/// `ValueError`, one line.
+/// The exception of Python for an error of the program, `brdfit.Error`.
 pub fn refuse(error: &Error) -> PyErr {
-    PyValueError::new_err(error.in_exception())
-}
-
-/// What clap says, in one line.
-fn usage(error: &clap::Error) -> PyErr {
-    let text = error.to_string();
-    let told = text.split("\n\n").next().unwrap_or_default();
-    let told: Vec<&str> = told.lines().map(str::trim).collect();
-    let told = told.join(" ");
-    PyValueError::new_err(told.strip_prefix("error: ").unwrap_or(&told).to_string())
+    let told = (
+        error.in_exception(),
+        error.kind.name(),
+        error.file.as_deref(),
+        error.line,
+        error.column,
+    );
+    Python::attach(|py| {
+        let class = py.import("brdfit._errors").and_then(|errors| errors.getattr("Error"));
+        class
+            .and_then(|class| class.call1(told))
+            .map_or_else(|error| error, PyErr::from_value)
+    })
 }

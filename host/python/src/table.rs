@@ -3,7 +3,7 @@
 use brdfit::analysis::fit::FittedScan;
 use brdfit::engine::{FitOptions, Model, Outcome};
 use brdfit::result::cell::{Cell, Kind};
-use brdfit::result::columns::{Column, Row, of_fits, of_outcomes};
+use brdfit::result::columns::{Column, FitRow, of_fits, of_outcomes};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -13,7 +13,7 @@ pub fn of_one<'py>(py: Python<'py>, fitted: &FittedScan) -> PyResult<Bound<'py, 
     let table = PyDict::new(py);
     for column in of_fits(&[fitted.outcome.model]) {
         let name = &column.name;
-        match column.cell(&Row::from(fitted)) {
+        match column.cell(&FitRow::from(fitted)) {
             Cell::Empty => table.set_item(name, py.None()),
             Cell::Flag(flag) => table.set_item(name, flag),
             Cell::Whole(whole) => table.set_item(name, whole),
@@ -48,7 +48,7 @@ impl Table {
 
     /// The cells of a fit.
     pub fn cells(&self, options: &FitOptions, outcome: &Outcome) -> Vec<Cell> {
-        let row = Row {
+        let row = FitRow {
             scan: None,
             options,
             outcome,

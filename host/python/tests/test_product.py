@@ -1,6 +1,7 @@
 """What the program does beyond a fit, from Python: with its numbers."""
 
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -51,12 +52,18 @@ def test_reading_takes_the_program_s_options(tmp_path):
     scans = brdfit.read(file, columns={"theta_s": 1, "theta_i": 2, "brdf": 4}, ignore="R", mask_retro=5, thin=2)
     assert len(scans) == 1 and scans[0].brdf[0] == 0.2
     assert {why for why, *_ in scans[0].left_out} == {"near retro"}
-    with pytest.raises(ValueError, match="scan.csv:"):
+    with pytest.raises(brdfit.Error, match="scan.csv:") as caught:
         brdfit.read(file)
+    assert caught.value.kind == "input" and caught.value.file == str(file)
+    assert pickle.loads(pickle.dumps(caught.value)).file == str(file)
     with pytest.raises(TypeError, match=r"^read\(\) has no option 'colour'; its options are input_format, "):
         brdfit.read(file, colour="R")
-    with pytest.raises(ValueError, match="none.csv: "):
+    with pytest.raises(brdfit.Error, match="none.csv: ") as caught:
         brdfit.read(tmp_path / "none.csv")
+    assert caught.value.kind == "file" and caught.value.line is None
+    with pytest.raises(brdfit.Error, match="^invalid value 'best' for method ") as caught:
+        brdfit.fit(scans[0], method="best")
+    assert caught.value.kind == "options" and caught.value.file is None
 
 
 def test_what_follows_from_a_fit(read, fitted):

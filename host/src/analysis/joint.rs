@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::criteria::Criteria;
-use crate::engine::joint::{self, Fitted};
+use crate::engine::joint::{self, JointFit};
 use crate::engine::{FitError, FitOptions, Precision};
 
 /// One candidate, fitted to all scans.
@@ -14,7 +14,7 @@ pub struct Candidate {
     /// How it was fitted.
     pub options: FitOptions,
     /// Its fit.
-    pub fitted: Fitted,
+    pub fitted: JointFit,
     /// What it is judged by.
     pub criteria: Criteria,
 }

@@ -84,7 +84,7 @@ fn beside(out: &Path) -> Result<Vec<PathBuf>, Error> {
         name.strip_prefix(&base).is_some_and(own::is_part)
     };
     let unlisted = |error: std::io::Error| {
-        Error::new(format!("cannot be listed: {error}"))
+        Error::file(format!("cannot be listed: {error}"))
             .in_file(folder.display().to_string())
             .help("name the parts, or the --out that the batch had")
     };

@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
 
 /// Makes a folder for figures, which must take files.
 fn make(folder: &Path) -> Result<(), Error> {
-    let fail = |error| Error::new(format!("cannot be made: {error}")).in_file(folder.display().to_string());
+    let fail = |error| Error::file(format!("cannot be made: {error}")).in_file(folder.display().to_string());
     fs::create_dir_all(folder).map_err(fail)?;
     Target::new(&folder.join("1-curves.svg"), &NO_INPUTS).map(drop)
 }

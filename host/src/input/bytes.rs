@@ -17,7 +17,7 @@ pub const STDIN: &str = "-";
 /// # Errors
 /// It is missing, a directory, a device, or not readable.
 pub fn of_file(path: &Path) -> Result<Vec<u8>, Error> {
-    let fail = |what: String| Error::new(what).in_file(path.display().to_string());
+    let fail = |what: String| Error::file(what).in_file(path.display().to_string());
     // On some systems a directory opens like a file, and only reading it fails.
     if path.is_dir() {
         return Err(fail("this is a directory".into()).help("name the files in it"));
@@ -51,7 +51,7 @@ pub fn of_stdin(stream: &mut dyn Read) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     match stream.read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(Error::new(format!("cannot be read: {error}")).in_file(STDIN)),
+        Err(error) => Err(Error::file(format!("cannot be read: {error}")).in_file(STDIN)),
     }
 }
 

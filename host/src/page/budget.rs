@@ -3,10 +3,10 @@
 use maud::{Markup, html};
 
 use super::html::{document, minus, model, number, symbol};
+use super::provenance;
 use crate::analysis::derived::Value;
 use crate::analysis::repeats::{Budget, Quantity};
 use crate::input::left_out;
-use crate::names;
 use crate::number::{four, percent, two};
 use crate::plain::plain;
 use crate::result::repeats::{Found, missing, name, verdict};
@@ -121,19 +121,12 @@ fn provenance(found: &Found, command: &str) -> Markup {
         table.provenance {
             caption { "Provenance. The command gives this page again, to the byte." }
             tbody {
-                tr { th.text { "command" } td.text { code { (command) } } }
-                tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
+                (provenance::origin(command))
                 tr { th.text { "terms" } td.text { (term_names(options.terms & options.model.terms).join(", ")) } }
-                tr { th.text { "search" } td.text {
-                    (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", "
-                    (names::precision(options.precision)) @if options.robust { ", robust" }
-                } }
+                (provenance::search(options))
             }
             @for measurement in found.measurements { tbody {
-                @for source in &measurement.about.sources {
-                    tr { th.text { "input" } td.text { (plain(&source.file)) ", " (source.bytes) " bytes" } }
-                    tr { th.text { "SHA-256" } td.text { code { (source.sha256) } } }
-                }
+                (provenance::sources(&measurement.about.sources))
                 tr { th.text { "read as" } td.text { (measurement.read_as) } }
             } }
         }

@@ -3,6 +3,7 @@
 use brdfit_core::uncertainty::Place;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use super::provenance;
 use super::section::{Section, Table};
 use crate::analysis::choose::Choice;
 use crate::analysis::derived::{Derived, Value};
@@ -321,7 +322,6 @@ fn angles(section: &Section) -> Markup {
 /// What it takes to make this again, and what came out: every column of the tables of results but the time, which is another each time.
 fn provenance(section: &Section, command: &str) -> Markup {
     let (fit, options) = (&section.fit, &section.fit.options);
-    let precision = names::precision(options.precision);
     let columns = of_fits(&[fit.outcome.model])
         .into_iter()
         .filter(|column| column.json != Json::Time);
@@ -331,15 +331,11 @@ fn provenance(section: &Section, command: &str) -> Markup {
         table.provenance {
             caption { "Provenance and results by their names in CSV and JSON, with all digits. The command gives this page again, to the byte." }
             tbody {
-                tr { th.text { "command" } td.text { code { (command) } } }
-                tr { th.text { "program" } td.text { "brdfit " (env!("CARGO_PKG_VERSION")) } }
-                @for source in &fit.about.sources {
-                    tr { th.text { "input" } td.text { (plain(&source.file)) ", " (source.bytes) " bytes" } }
-                    tr { th.text { "SHA-256" } td.text { code { (source.sha256) } } }
-                }
+                (provenance::origin(command))
+                (provenance::sources(&fit.about.sources))
                 tr { th.text { "read as" } td.text { (fit.read_as) } }
                 tr { th.text { "left out" } td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "nothing".into())) } }
-                tr { th.text { "search" } td.text { (names::method(options.method)) " of " (options.starts()) " starts, seed " (options.seed) ", " (precision) @if options.robust { ", robust" } } }
+                (provenance::search(options))
                 @for (about, what) in beside::lines(fit) { tr { th.text { (about) } td.text { (what) } } }
                 @if let Some(choice) = &fit.choice { tr { th.text { "choice" } td.text { (words::choice(choice)) } } }
             }

@@ -49,6 +49,10 @@ impl Axis {
         };
         let larger = STEPS[..=fits.unwrap_or(STEPS.len() - 1)].iter().rev();
         let ticks = with_labels(larger.map(|&step| ticks(step)));
+        Axis::of((low, high), pixels, ticks)
+    }
+
+    fn of((low, high): (f64, f64), pixels: f64, ticks: Vec<Tick>) -> Axis {
         Axis {
             low,
             high,
@@ -76,13 +80,7 @@ impl Axis {
         let smaller = [10.0, 5.0, 2.0, 1.0, 0.5, 0.2].map(|k| k * power);
         let first = smaller.iter().rposition(|&step| step >= least).unwrap_or(0);
         let ticks = with_labels(smaller[first..].iter().map(|&step| ticks(step)));
-        Axis {
-            low,
-            high,
-            pixels,
-            ticks,
-            upwards: false,
-        }
+        Axis::of((low, high), pixels, ticks)
     }
 
     /// The same from bottom to top.

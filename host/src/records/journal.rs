@@ -41,10 +41,9 @@ impl Journal {
         let shown = path.display().to_string();
         let fail = |what: String, help: &str| Error::new(what).in_file(&shown).help(help);
         let broken = |error: std::io::Error| {
-            fail(
-                format!("cannot be written: {error}"),
-                "check that the folder is there and writable",
-            )
+            Error::file(format!("cannot be written: {error}"))
+                .in_file(&shown)
+                .help("check that the folder is there and writable")
         };
         let file = OpenOptions::new()
             .read(true)
@@ -131,7 +130,7 @@ impl Journal {
     }
 
     fn broken(&self, error: &std::io::Error) -> Error {
-        Error::new(format!("cannot be kept: {error}"))
+        Error::file(format!("cannot be kept: {error}"))
             .in_file(self.path.display().to_string())
             .help("check the disk, and go on with --resume")
     }
@@ -141,7 +140,7 @@ impl Journal {
         let help = "remove the file, or take the options and files of the run that was interrupted";
         let path = self.path.clone();
         let fail =
-            |error: std::io::Error| Error::new(format!("cannot be read: {error}")).in_file(path.display().to_string());
+            |error: std::io::Error| Error::file(format!("cannot be read: {error}")).in_file(path.display().to_string());
         let mut lines = BufReader::new(&self.file);
         let Some((found, length)) = record::head(&mut lines).map_err(fail)? else {
             return Err(Error::new("this is not a file of finished fits")
@@ -188,7 +187,7 @@ impl Place {
 /// The part is of another batch, or cannot be read or copied.
 pub fn take_over(part: &Path, journal: &Path, head: &Head) -> Result<(), Error> {
     let fail =
-        |error: std::io::Error| Error::new(format!("cannot be read: {error}")).in_file(part.display().to_string());
+        |error: std::io::Error| Error::file(format!("cannot be read: {error}")).in_file(part.display().to_string());
     if journal.exists() || !part.is_file() {
         return Ok(());
     }

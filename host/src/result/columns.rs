@@ -47,7 +47,7 @@ pub enum Json {
 
 /// What a row is about: a fit, or one of its minima.
 #[derive(Clone, Copy)]
-pub struct Row<'a> {
+pub struct FitRow<'a> {
     /// The fitted scan; none where the samples are all that is known of it.
     pub scan: Option<&'a FittedScan>,
     /// What was asked for.
@@ -58,9 +58,9 @@ pub struct Row<'a> {
     pub minimum: Option<(usize, &'a Minimum)>,
 }
 
-impl<'a> From<&'a FittedScan> for Row<'a> {
+impl<'a> From<&'a FittedScan> for FitRow<'a> {
     fn from(scan: &'a FittedScan) -> Self {
-        Row {
+        FitRow {
             scan: Some(scan),
             options: &scan.options,
             outcome: &scan.outcome,
@@ -69,7 +69,7 @@ impl<'a> From<&'a FittedScan> for Row<'a> {
     }
 }
 
-impl Row<'_> {
+impl FitRow<'_> {
     fn params(&self) -> &Values {
         self.minimum
             .map_or(&self.outcome.params, |(_, minimum)| &minimum.params)
@@ -79,13 +79,13 @@ impl Row<'_> {
 /// The value of a row; one that is absent, NaN or infinite is an empty cell.
 #[derive(Clone, Copy)]
 enum Value {
-    Text(fn(&Row) -> Option<String>),
-    Words(fn(&Row) -> Vec<&'static str>),
-    Whole(fn(&Row) -> Option<u64>),
-    Number(fn(&Row) -> Option<f64>),
-    Flag(fn(&Row) -> Option<bool>),
+    Text(fn(&FitRow) -> Option<String>),
+    Words(fn(&FitRow) -> Vec<&'static str>),
+    Whole(fn(&FitRow) -> Option<u64>),
+    Number(fn(&FitRow) -> Option<f64>),
+    Flag(fn(&FitRow) -> Option<bool>),
     /// Of the parameter of this name, by its place; one that the row's model has not is empty.
-    OfParameter(fn(&Row, usize) -> Option<f64>, &'static str),
+    OfParameter(fn(&FitRow, usize) -> Option<f64>, &'static str),
 }
 
 impl Column {
@@ -110,7 +110,7 @@ impl Column {
     }
 
     /// Its value in a row.
-    pub fn cell(&self, row: &Row) -> Cell {
+    pub fn cell(&self, row: &FitRow) -> Cell {
         let number = |value: Option<f64>| value.filter(|x| x.is_finite()).map(Cell::Number);
         let cell = match self.value {
             Value::Text(of) => of(row).map(Cell::Text),
@@ -163,7 +163,7 @@ fn scan() -> Vec<Column> {
 /// How it was fitted, and how well.
 fn asked() -> Vec<Column> {
     use Json::Found;
-    let mse2 = |row: &Row| Some(row.minimum.map_or(row.outcome.mse2, |(_, minimum)| minimum.mse2));
+    let mse2 = |row: &FitRow| Some(row.minimum.map_or(row.outcome.mse2, |(_, minimum)| minimum.mse2));
     let eq_17 = "sum of squared residuals of ln f over samples squared (Eq. 17)";
     vec![
         whole("samples", "samples that were fitted", Found, |row| {
@@ -196,7 +196,7 @@ pub fn every(models: &[&Model]) -> Vec<&'static Parameter> {
 }
 
 fn parameters(models: &[&Model]) -> Vec<Column> {
-    let value = |row: &Row, place: usize| Some(row.params()[place]);
+    let value = |row: &FitRow, place: usize| Some(row.params()[place]);
     let one = |of| parameter("", "", of, value);
     every(models).into_iter().map(one).collect()
 }
@@ -220,7 +220,7 @@ fn minimum() -> Vec<Column> {
 /// What is known of the best fit.
 fn found() -> Vec<Column> {
     use Json::{Bounds, End, Found, Otherwise};
-    let worst = |row: &Row| Some(row.outcome.minima.last().map_or(row.outcome.mse2, |worst| worst.mse2));
+    let worst = |row: &FitRow| Some(row.outcome.minima.last().map_or(row.outcome.mse2, |worst| worst.mse2));
     let potential = "(high - low) / high of the MSE^2 of the minima (Table 3)";
     let scale = "robust standard deviation of a residual of ln f";
     let offset = "what the instrument reads for theta_s = 0, if that was fitted";
@@ -273,7 +273,7 @@ fn known(models: &[&Model]) -> Vec<Column> {
         Json::Otherwise,
         |row| Some(row.outcome.uncertainty.degrees_of_freedom as u64),
     );
-    let stderr = |row: &Row, index: usize| {
+    let stderr = |row: &FitRow, index: usize| {
         let known = &row.outcome.uncertainty;
         (known.places[index] == Some(Place::Inside)).then_some(known.stderr[index])
     };
@@ -361,28 +361,28 @@ fn of_scan() -> Vec<Column> {
     ]
 }
 
-fn text(name: &str, about: &str, json: Json, of: fn(&Row) -> Option<String>) -> Column {
+fn text(name: &str, about: &str, json: Json, of: fn(&FitRow) -> Option<String>) -> Column {
     Column::new(name, "", about, json, Value::Text(of))
 }
 
-fn words(name: &str, about: &str, json: Json, of: fn(&Row) -> Vec<&'static str>) -> Column {
+fn words(name: &str, about: &str, json: Json, of: fn(&FitRow) -> Vec<&'static str>) -> Column {
     Column::new(name, "", about, json, Value::Words(of))
 }
 
-fn whole(name: &str, about: &str, json: Json, of: fn(&Row) -> Option<u64>) -> Column {
+fn whole(name: &str, about: &str, json: Json, of: fn(&FitRow) -> Option<u64>) -> Column {
     Column::new(name, "", about, json, Value::Whole(of))
 }
 
-fn number(name: &str, unit: &'static str, about: &str, json: Json, of: fn(&Row) -> Option<f64>) -> Column {
+fn number(name: &str, unit: &'static str, about: &str, json: Json, of: fn(&FitRow) -> Option<f64>) -> Column {
     Column::new(name, unit, about, json, Value::Number(of))
 }
 
-fn flag(name: &str, about: &str, json: Json, of: fn(&Row) -> Option<bool>) -> Column {
+fn flag(name: &str, about: &str, json: Json, of: fn(&FitRow) -> Option<bool>) -> Column {
     Column::new(name, "", about, json, Value::Flag(of))
 }
 
 /// The column of one parameter; `before` stands before its name and `about` before what it means.
-fn parameter(before: &str, about: &str, of: &'static Parameter, value: fn(&Row, usize) -> Option<f64>) -> Column {
+fn parameter(before: &str, about: &str, of: &'static Parameter, value: fn(&FitRow, usize) -> Option<f64>) -> Column {
     Column::new(
         format!("{before}{}", of.name),
         if of.unit.is_empty() { "1" } else { of.unit },

@@ -1,6 +1,6 @@
 //! Fitted scans as a table.
 
-use super::columns::{Row, of_fits, of_minima};
+use super::columns::{FitRow, of_fits, of_minima};
 use crate::analysis::fit::FittedScan;
 use crate::document::write_row;
 use crate::engine::Model;
@@ -13,16 +13,16 @@ pub fn csv(scans: &[FittedScan], minima: bool) -> String {
     // Writing to memory does not fail.
     let names: Vec<&String> = columns.iter().map(|column| &column.name).collect();
     let _ = write_row(&mut writer, &names);
-    let mut write = |row: Row| {
+    let mut write = |row: FitRow| {
         let cells: Vec<String> = columns.iter().map(|column| column.cell(&row).text()).collect();
         let _ = write_row(&mut writer, &cells);
     };
     for scan in scans {
-        let row = Row::from(scan);
+        let row = FitRow::from(scan);
         if minima {
             let each = scan.outcome.minima.iter().enumerate();
             each.for_each(|minimum| {
-                write(Row {
+                write(FitRow {
                     minimum: Some(minimum),
                     ..row
                 });

@@ -9,7 +9,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use super::cell::Cell;
-use super::columns::{Json, Row, of_fits};
+use super::columns::{FitRow, Json, of_fits};
 use crate::analysis::fit::FittedScan;
 use crate::analysis::hints::Hint;
 use crate::analysis::proof::Proof;
@@ -66,7 +66,7 @@ impl Serialize for Columns<'_> {
             .iter()
             .filter(|column| column.json == *place)
         {
-            let cell = column.cell(&Row::from(*scan));
+            let cell = column.cell(&FitRow::from(*scan));
             if *place == Json::Head || cell != Cell::Empty {
                 map.serialize_entry(&column.name, &cell)?;
             }

@@ -175,7 +175,7 @@ struct Document<'a> {
     level: f64,
     calibration: f64,
     runs: Vec<Run<'a>>,
-    quantities: Vec<Row<'a>>,
+    quantities: Vec<JsonQuantity<'a>>,
 }
 
 #[derive(Serialize)]
@@ -187,7 +187,7 @@ struct Run<'a> {
 }
 
 #[derive(Serialize)]
-struct Row<'a> {
+struct JsonQuantity<'a> {
     name: &'a str,
     unit: &'static str,
     theta_i_deg: Option<f64>,
@@ -240,7 +240,7 @@ pub fn json(found: &Found) -> String {
         expanded: budget.expanded,
         run_apart: budget.apart.map(|place| place + 1),
     };
-    let quantities = found.quantities.iter().map(|one| Row {
+    let quantities = found.quantities.iter().map(|one| JsonQuantity {
         name: &one.name,
         unit: one.unit,
         theta_i_deg: one.theta_i,

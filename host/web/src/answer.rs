@@ -40,6 +40,7 @@ pub fn answer(session: &mut Session, request: &[u8], told: Told) -> String {
     let text = match answered(session, request, told) {
         Ok(value) => serde_json::to_string(&json!({ "ok": value })),
         Err(error) => serde_json::to_string(&json!({ "error": {
+            "kind": error.kind.name(),
             "line": error.to_string(),
             "file": error.file,
             "message": error.message(),

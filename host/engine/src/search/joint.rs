@@ -24,7 +24,7 @@ pub const SCANS: usize = 8;
 /// A fit of several scans.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Fitted {
+pub struct JointFit {
     /// Which of the model's parameters are shared.
     pub shared: Vec<bool>,
     /// The parameters of each scan.
@@ -58,12 +58,12 @@ pub fn run<const P: usize>(
     shared: &[bool],
     options: &FitOptions,
     all: &[&[Sample<f64>]],
-) -> Result<Fitted, (usize, FitError)> {
+) -> Result<JointFit, (usize, FitError)> {
     let until = options.until;
     let watched: Vec<_> = scans.iter().map(|&scene| Watched { scene, until }).collect();
     let scans: &[&Kernel<f64, P>] = &watched.iter().map(|scan| scan as _).collect::<Vec<_>>();
     let layout = Layout::new(own, options.model);
-    let scene = Scene {
+    let scene = Scans {
         scans,
         layout: &layout,
         shared,
@@ -139,7 +139,7 @@ pub fn run<const P: usize>(
             .map(|place| layout.coordinate(place).and_then(|k| error(s, k)))
             .collect()
     };
-    Ok(Fitted {
+    Ok(JointFit {
         shared: shared.to_vec(),
         scans: (0..scans.len())
             .map(|s| layout.values(&problem.of(&best.x, s)))
@@ -154,7 +154,7 @@ pub fn run<const P: usize>(
 }
 
 /// All scans with what stands beside them.
-struct Scene<'a, const P: usize> {
+struct Scans<'a, const P: usize> {
     scans: &'a [&'a Kernel<'a, f64, P>],
     layout: &'a Layout<'a, P>,
     shared: &'a [bool],
@@ -169,7 +169,7 @@ struct Best {
     separate: f64,
 }
 
-impl<const P: usize> Scene<'_, P> {
+impl<const P: usize> Scans<'_, P> {
     fn is_shared(&self) -> [bool; P] {
         self.layout.places.map(|place| self.shared[place])
     }

@@ -3,7 +3,7 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::Parameter;
 
-use super::joint::Fitted;
+use super::joint::JointFit;
 use super::watched::Trace;
 use crate::error::FitError;
 use crate::options::{FitOptions, Precision};
@@ -116,7 +116,7 @@ impl Scale {
     }
 
     /// A joint fit, in the unit of the scans.
-    pub fn joint(self, parameters: &[Parameter], fitted: Fitted) -> Fitted {
+    pub fn joint(self, parameters: &[Parameter], fitted: JointFit) -> JointFit {
         let errors = fitted.errors.iter().map(|errors| {
             let each = errors.iter().enumerate();
             let one = |(place, error): (usize, &Option<f64>)| {
@@ -124,7 +124,7 @@ impl Scale {
             };
             each.map(one).collect()
         });
-        Fitted {
+        JointFit {
             errors: errors.collect(),
             scans: fitted
                 .scans

@@ -48,7 +48,7 @@ pub(crate) fn watch<R: Real, const P: usize>(
     let bounds: Bounds<R, P> = layout.bounds(options);
     let (lm, starts) = (Options::default(), options.starts());
     let begun = Stopwatch::start();
-    let watched = Watched {
+    let watched = Timed {
         scene,
         begun,
         seen: RefCell::new(Seen {
@@ -92,13 +92,13 @@ struct Seen<R, const P: usize> {
 }
 
 /// A scene that notes each new least cost.
-struct Watched<'a, R, const P: usize> {
+struct Timed<'a, R, const P: usize> {
     scene: &'a Kernel<'a, R, P>,
     begun: Stopwatch,
     seen: RefCell<Seen<R, P>>,
 }
 
-impl<R: Real, const P: usize> Watched<'_, R, P> {
+impl<R: Real, const P: usize> Timed<'_, R, P> {
     fn note(&self, x: &[R; P], cost: R, linearize: u32) {
         let mut seen = self.seen.borrow_mut();
         seen.evaluations.linearize += linearize;
@@ -111,7 +111,7 @@ impl<R: Real, const P: usize> Watched<'_, R, P> {
     }
 }
 
-impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
+impl<R: Real, const P: usize> Problem<R, P> for Timed<'_, R, P> {
     fn cost(&self, x: &[R; P]) -> R {
         let cost = self.scene.cost(x);
         self.note(x, cost, 0);
@@ -127,7 +127,7 @@ impl<R: Real, const P: usize> Problem<R, P> for Watched<'_, R, P> {
     }
 }
 
-impl<R: Real, const P: usize> Scene<R, P> for Watched<'_, R, P> {
+impl<R: Real, const P: usize> Scene<R, P> for Timed<'_, R, P> {
     fn propose(&self, bounds: &Bounds<R, P>, seed: u64, i: u64, region: Region<R, P>) -> Candidate<R, P> {
         self.scene.propose(bounds, seed, i, region)
     }

@@ -17,10 +17,13 @@ All angles are in degrees and the BRDF is in sr^-1, as in the files of the progr
 | `compare` | which model a scan needs |
 | `joint` | several scans that share parameters |
 | `report`, `export` | the page on fits; the model for other programs |
+
+What the program refuses is an `Error`, which is a `ValueError`: one line, with the kind of fault, the file and its line apart.
 """
 
 from ._brdfit import Scan
 from ._brdfit import models as _models
+from ._errors import Error
 from ._fit import brdf, fit, fit_many, read, scan
 from ._options import Reading, Search
 from ._studies import Comparison, Interval, Joint, Profile, Profiles, compare, export, joint, profile, report
@@ -34,6 +37,7 @@ __all__ = [
     "MODELS",
     "NAMES",
     "Comparison",
+    "Error",
     "Fit",
     "Fits",
     "Interval",

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _brdfit, _options
 from ._arrays import DEGREES, array, azimuth, broadcast, numbers, rows, together
 from ._brdfit import Scan
+from ._errors import Error
 from .results import Fit, Fits
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ def told() -> Iterator[None]:
     """What the program says of its options is said in the words of Python."""
     try:
         yield
+    except Error:
+        raise
     except ValueError as error:
         raise ValueError(_options.in_python(str(error))) from None
 

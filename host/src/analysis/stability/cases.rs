@@ -19,7 +19,7 @@ pub struct Case {
     pub samples: Vec<Sample<f64>>,
 }
 
-struct Scene {
+struct Recipe {
     name: &'static str,
     theta_i_deg: f64,
     /// Half width in degrees and step of a fan around the specular direction, besides -85 to 85 by 1.
@@ -28,56 +28,56 @@ struct Scene {
     params: [f64; 6],
 }
 
-const SCENES: [Scene; 9] = [
-    Scene {
+const RECIPES: [Recipe; 9] = [
+    Recipe {
         name: "dielectric, one angle",
         theta_i_deg: 45.0,
         fan: None,
         params: [0.1, 3.0, 0.02, 0.2, 1.5, 0.0],
     },
-    Scene {
+    Recipe {
         name: "n -> 1, kappa -> 0",
         theta_i_deg: 60.0,
         fan: None,
         params: [1e-3, 50.0, 20.0, 0.1, 1.002, 1e-3],
     },
-    Scene {
+    Recipe {
         name: "m at its lower bound",
         theta_i_deg: 45.0,
         fan: Some((2e-3, 1e-4)),
         params: [0.1, 1.0, 0.01, 1e-5, 1.5, 0.5],
     },
-    Scene {
+    Recipe {
         name: "m at its upper bound",
         theta_i_deg: 45.0,
         fan: None,
         params: [0.1, 10.0, 1.0, 10.0, 1.5, 0.5],
     },
-    Scene {
+    Recipe {
         name: "rho_d and rho_v at 0",
         theta_i_deg: 30.0,
         fan: None,
         params: [0.0, 2.0, 0.0, 0.4, 1.6, 0.3],
     },
-    Scene {
+    Recipe {
         name: "the same down to 1e-17 sr^-1",
         theta_i_deg: 30.0,
         fan: None,
         params: [0.0, 2.0, 0.0, 0.25, 1.6, 0.3],
     },
-    Scene {
+    Recipe {
         name: "rho_s and rho_v at 0",
         theta_i_deg: 30.0,
         fan: None,
         params: [0.3, 0.0, 0.0, 0.1, 1.5, 0.0],
     },
-    Scene {
+    Recipe {
         name: "lobes that coincide",
         theta_i_deg: 2.0,
         fan: None,
         params: [0.05, 2.0, 0.5, 0.2, 1.5, 0.1],
     },
-    Scene {
+    Recipe {
         name: "eight decades of BRDF",
         theta_i_deg: 45.0,
         fan: Some((1.0, 0.02)),
@@ -102,7 +102,7 @@ pub fn all() -> Vec<Case> {
         ("test data 3, noise 10 %", file!("3_sym_seed1")),
     ];
     let sets = sets.into_iter().map(|(name, samples)| Case { name, samples });
-    let scenes = SCENES.iter().map(|scene| Case {
+    let scenes = RECIPES.iter().map(|scene| Case {
         name: scene.name,
         samples: generate(scene),
     });
@@ -110,7 +110,7 @@ pub fn all() -> Vec<Case> {
 }
 
 /// The model with noise of a fixed seed.
-fn generate(scene: &Scene) -> Vec<Sample<f64>> {
+fn generate(scene: &Recipe) -> Vec<Sample<f64>> {
     let material = Material::paper(scene.params);
     let mut degrees: Vec<f64> = (-85..=85).map(f64::from).collect();
     if let Some((width, step)) = scene.fan {

@@ -117,22 +117,22 @@ pub fn gradient(sample: &Sample<f64>, [rho_d, rho_s, rho_v, m, n, kappa]: [f64; 
         let cos_2d = if lobe == 0 { &level + &across } else { &level - &across };
         let (tan2_h, cos2_d) = half_angles(&cos_2d, &cos_sum);
         // Eq. 8 with 1 / cos^4 = (1 + tan^2)^2.
-        let mut beam = (-(&tan2_h / &m2)).exp() * square(&(&one + &tan2_h)) / (&pi * &m2);
+        let mut shape = (-(&tan2_h / &m2)).exp() * square(&(&one + &tan2_h)) / (&pi * &m2);
         if lobe == 0 {
             // Eq. 7 and 9, with cos theta_h / cos theta_d = (cos ti + cos ts) / (2 cos^2 theta_d).
             let lower = if cos_i < cos_s { &cos_i } else { &cos_s };
             let masking = &cos_sum * lower / &cos2_d;
             let masking = if masking < one { masking } else { one.clone() };
-            beam = beam * masking / (number(4.0) * &level);
+            shape = shape * masking / (number(4.0) * &level);
         }
         let rho = number(rho);
         let [f, d_n, d_kappa] = fresnel(&cos2_d, n, kappa);
-        let lit = &beam * &f;
-        let term = &rho * &lit;
+        let unit = &shape * &f;
+        let term = &rho * &unit;
         d[3] += &term * (&tan2_h / &m2 - &one) * &two / &m;
-        d[4] += &rho * &beam * d_n;
-        d[5] += &rho * &beam * d_kappa;
-        d[1 + lobe] = lit;
+        d[4] += &rho * &shape * d_n;
+        d[5] += &rho * &shape * d_kappa;
+        d[1 + lobe] = unit;
         sum += term;
     }
     // A BRDF of 0 has no logarithm.

@@ -99,7 +99,7 @@ fn matches(pattern: &str, out: &Path) -> Result<Vec<PathBuf>, Error> {
 }
 
 fn unlisted(folder: &Path, error: &std::io::Error) -> Error {
-    Error::new(format!("cannot be listed: {error}"))
+    Error::file(format!("cannot be listed: {error}"))
         .in_file(folder.display().to_string())
         .help("check its permissions, or name the scans without it")
 }
@@ -148,23 +148,18 @@ mod tests {
         };
         assert_eq!(names(&[""], ""), ["a.csv", "b.csv", "c.txt"]);
         // What only has the name of a result, or one that begins like it, is a scan.
-        for name in [
+        let likes = [
             "out.csv",
             "out.csv.partial",
             "out.csv.1-of-2",
             "out.csv.bak",
             "out.csv2",
-        ] {
+        ];
+        for name in likes {
             std::fs::write(path(name), "theta_i,theta_s,brdf\n").unwrap();
         }
         assert_eq!(names(&[""], "").len(), 8);
-        for name in [
-            "out.csv",
-            "out.csv.partial",
-            "out.csv.1-of-2",
-            "out.csv.bak",
-            "out.csv2",
-        ] {
+        for name in likes {
             std::fs::remove_file(path(name)).unwrap();
         }
         assert_eq!(names(&["c.txt", "*.csv", "a.csv"], ""), ["c.txt", "a.csv", "b.csv"]);

@@ -46,6 +46,7 @@ mod wide;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::engine::FitError;
 use crate::error::{Error, ErrorKind};
@@ -203,10 +204,11 @@ fn raw_scans(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Format,
     let mut scans = raw::select(scans, &options.column)?;
     cut::suspect(format, bytes, &mut scans);
     // Once, for a spectral file may have thousands of scans.
-    let source = Source::new(file, bytes);
+    let sources: Arc<[Source]> = Arc::new([Source::new(file, bytes)]);
+    let asked = Arc::new(options.clone());
     for scan in &mut scans {
-        scan.about.sources.push(source.clone());
-        scan.about.asked = options.clone();
+        scan.about.sources = sources.clone();
+        scan.about.asked = asked.clone();
         incidence::give_theta_i(file, scan, options)?;
         if scan.about.kind != Kind::Own {
             doubt::settle(scan, options)?;

@@ -136,7 +136,7 @@ impl Scan {
     /// Columns of the file that are not used.
     #[getter]
     fn not_used(&self) -> Vec<String> {
-        self.0.about.unused.clone()
+        self.0.about.unused.to_vec()
     }
 
     /// The scan as the program's own table, which reads back to the same bits.

@@ -10,16 +10,16 @@ use super::options::ReadOptions;
 use super::source::Source;
 use crate::plain::some_of;
 
-/// What a reader understood, beside the numbers.
+/// What a reader understood, beside the numbers; the scans of a file share what may be long, for there may be thousands of them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct About {
     /// What kind of file it is, as far as its numbers need checks.
     pub kind: Kind,
     /// The columns that are used, in order.
-    pub columns: Vec<Used>,
+    pub columns: Arc<[Used]>,
     /// The columns that are not, by name.
-    pub unused: Vec<String>,
+    pub unused: Arc<[String]>,
     /// Where the angle of incidence is from.
     pub theta_i: ThetaI,
     /// True if the file has one angle of incidence, which no column gives.
@@ -39,9 +39,9 @@ pub struct About {
     /// What may be wrong with the file; this is among the notes too.
     pub doubts: Vec<String>,
     /// The files of the scan, in order.
-    pub sources: Vec<Source>,
+    pub sources: Arc<[Source]>,
     /// What the user said about them.
-    pub asked: ReadOptions,
+    pub asked: Arc<ReadOptions>,
 }
 
 impl About {
@@ -55,8 +55,8 @@ impl Default for About {
     fn default() -> Self {
         About {
             kind: Kind::Own,
-            columns: Vec::new(),
-            unused: Vec::new(),
+            columns: Arc::default(),
+            unused: Arc::default(),
             theta_i: ThetaI::Column,
             one_angle: false,
             angle_of_heads: None,
@@ -66,8 +66,8 @@ impl Default for About {
             sigma_ln: None,
             notes: Vec::new(),
             doubts: Vec::new(),
-            sources: Vec::new(),
-            asked: ReadOptions::default(),
+            sources: Arc::default(),
+            asked: Arc::default(),
         }
     }
 }

@@ -51,6 +51,7 @@ impl Head {
         if head.coverage.is_none() {
             // Without brackets, as in `U k=2`.
             if let Some((before, factor)) = name
+                .trim_end()
                 .rsplit_once([' ', '_', ','])
                 .and_then(|(a, b)| Some((a, coverage(b)?)))
             {
@@ -164,6 +165,7 @@ mod tests {
         assert_eq!(seen("U (k=2)"), ("u".to_string(), None, Some(2.0)));
         assert_eq!(seen("U (k=2, %)"), ("u".to_string(), Some(Unit::Percent), Some(2.0)));
         assert_eq!(seen("U_BRDF k=1.96").2, Some(1.96));
+        assert_eq!(seen("U, k=2 [%]"), ("u".to_string(), Some(Unit::Percent), Some(2.0)));
         assert_eq!(seen("wavelength_um").1, Some(Unit::Length(1e3)));
         assert_eq!(seen("550 nm"), ("550".to_string(), Some(Unit::Length(1.0)), None));
         assert_eq!(seen("signal (mV)").1, Some(Unit::Foreign));

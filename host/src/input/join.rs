@@ -61,7 +61,7 @@ pub fn one(files: Vec<(String, (Format, Vec<RawScan>))>) -> Result<(String, (For
             scan.rows.extend(more.rows);
             scan.left_out.merge(more.left_out);
             scan.about.doubts.extend(more.about.doubts);
-            scan.about.sources.extend(more.about.sources);
+            scan.about.sources = [&scan.about.sources[..], &more.about.sources].concat().into();
             for note in more.about.notes {
                 if !scan.about.notes.contains(&note) {
                     scan.about.notes.push(note);

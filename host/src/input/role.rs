@@ -318,7 +318,7 @@ fn look(head: &Head) -> Look {
         "theta",
         "phi",
         "angle",
-        "azimuth",
+        "azim",
         "zenith",
         "polar",
         "tilt",
@@ -437,7 +437,7 @@ mod tests {
         all(Role::Value(Quantity::Brf), "BRF (%), reflectance factor");
         all(
             Role::Unknown(Look::Angle),
-            "theta_h, phi_d, theta_d, tilt (deg), sample rotation, x (rad), phi_h, polarangle_azimuth",
+            "theta_h, phi_d, theta_d, tilt (deg), sample rotation, x (rad), phi_h, polarangle_azimuth, azim_of_table",
         );
         all(
             Role::Unknown(Look::Wavelength),

@@ -86,10 +86,9 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let single = |k: usize| scans.iter().all(|scan| scan.splits.get(k) == scans[0].splits.get(k));
     let telling: Vec<bool> = (0..columns.splits.len()).map(|k| !single(k)).collect();
     let finish = |scan: Scan| {
-        let names = scan.splits.iter().zip(&telling).filter(|(_, telling)| **telling);
-        let names = names.map(|(name, _)| name.clone());
+        let splits = scan.splits.into_iter().zip(&telling).filter(|(_, telling)| **telling);
         let mut raw = scan.raw;
-        raw.names = names.chain(raw.names).collect();
+        raw.names.splice(0..0, splits.map(|(name, _)| name));
         if raw.names.is_empty() {
             raw.names.extend(sheet.facts.scan.clone());
         }

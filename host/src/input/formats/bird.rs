@@ -10,6 +10,7 @@ use crate::input::bytes::Lines;
 use crate::input::format::{Format, Reader};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::unit::Unit;
 use crate::input::units::Angles;
 
 /// This format.
@@ -96,6 +97,11 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
                 .help("give each array one value for each sample"));
         }
     }
+    // A file without the unit has that of a BRDF.
+    if !data.brdf.unit.is_empty() && Unit::parse(&data.brdf.unit) != Some(Unit::PerSr) {
+        return Err(Error::new(format!("the unit of BRDF is '{}'", shown(&data.brdf.unit)))
+            .help("give values in sr^-1, and say so"));
+    }
     let weight = uncertainty(data, text, &lines)?;
     let mut scans: Vec<RawScan> = Vec::new();
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
@@ -158,13 +164,16 @@ fn uncertainty<'a>(
         (None, Some(whole)) => whole.unit.as_str(),
         (None, None) => "sr^-1",
     };
-    if !["sr^-1", "1/sr", "%"].contains(&unit) {
-        return Err(
-            Error::new(format!("the unit of the uncertainty of BRDF is '{}'", shown(unit)))
-                .help("give sr^-1, 1/sr or %"),
-        );
-    }
-    let relative = unit == "%";
+    let relative = match Unit::parse(unit) {
+        Some(Unit::PerSr) => false,
+        Some(Unit::Percent) => true,
+        _ => {
+            return Err(
+                Error::new(format!("the unit of the uncertainty of BRDF is '{}'", shown(unit)))
+                    .help("give sr^-1, 1/sr or %"),
+            );
+        }
+    };
     Ok(move |k: usize| {
         let x = match (&data.u_brdf, &whole) {
             (Some(variable), _) => number(variable.values[k], text, lines)?,
@@ -194,9 +203,9 @@ fn number(raw: &RawValue, text: &str, lines: &Lines) -> Result<f64, Error> {
 }
 
 fn degrees(name: &str, unit: &str, angle: f64) -> Result<f64, Error> {
-    match unit {
-        "deg" | "°" => Ok(angle),
-        "rad" => Ok(angle.to_degrees()),
+    match Unit::parse(unit) {
+        Some(Unit::Deg) => Ok(angle),
+        Some(Unit::Rad) => Ok(angle.to_degrees()),
         _ => Err(Error::new(format!("the unit of {name} is '{}'", shown(unit))).help("give deg, ° or rad")),
     }
 }
@@ -261,12 +270,32 @@ mod tests {
     }
 
     #[test]
+    fn units_are_spelt_as_in_tables() {
+        // Numbers alone, which are equal to themselves.
+        let text = TEXT.replace(" null", " 1");
+        let expected = read(&text).unwrap();
+        for (from, to) in [
+            ("\"rad\"", "\"radians\""),
+            ("\"rad\"", "\"Radian\""),
+            ("\"deg\"", "\"degree\""),
+            ("\"deg\"", "\"Degrees\""),
+            ("\"°\"", "\"deg\""),
+            ("\"sr^-1\"", "\"1/sr\""),
+            ("\"sr^-1\"", "\"sr⁻¹\""),
+            ("\"%\"", "\"percent\""),
+        ] {
+            assert_eq!(read(&text.replace(from, to)).unwrap(), expected, "{to}");
+        }
+    }
+
+    #[test]
     fn errors_name_the_place() {
         for (from, to, line, column, what) in [
             ("0.25", "\"x\"", Some(6), Some(43), "is not a number"),
             ("\"theta_r\"", "\"theta_x\"", None, None, "missing field `theta_r`"),
             ("[190, 10, 100]", "[190, 10]", None, None, "phi_r has 2 values, BRDF 3"),
             ("\"rad\"", "\"grad\"", None, None, "unit of theta_i is 'grad'"),
+            ("\"sr^-1\"", "\"mV\"", None, None, "unit of BRDF is 'mV'"),
             ("}}", "}", Some(9), None, "EOF"),
         ] {
             let error = read(&TEXT.replacen(from, to, 1)).unwrap_err();

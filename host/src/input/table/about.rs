@@ -7,7 +7,7 @@ use crate::input::columns::{Azimuth, Columns, Value, WeightKind};
 use crate::input::kind::Kind;
 use crate::number::shortest;
 
-/// What is known of the columns of these values before the rows; `together` are all columns of values of the same scan, and `names` those of all columns.
+/// What is known of the columns of these values before the rows; `together` are all columns of values of the same scan, `names` those of all columns, and `unused` those of the columns that are not used.
 ///
 /// `theta_i` is what a remark says of the angle of incidence, degrees; `settled` if the program wrote the table itself.
 pub fn of(
@@ -15,6 +15,7 @@ pub fn of(
     value: &Value,
     together: &[usize],
     names: &Arc<[String]>,
+    unused: &Arc<[String]>,
     theta_i: Option<f64>,
     settled: bool,
 ) -> About {
@@ -52,14 +53,10 @@ pub fn of(
         name: columns.heads[column].text.clone(),
         holds,
     });
-    let title = |column: usize| match columns.heads[column].text.as_str() {
-        "" => format!("column {}", column + 1),
-        name => name.to_string(),
-    };
     About {
         kind: Kind::Table,
         columns: used.collect(),
-        unused: columns.unused.iter().map(|&(column, _)| title(column)).collect(),
+        unused: unused.clone(),
         theta_i: match columns.theta_i {
             Some(_) => ThetaI::Column,
             None if value.gives_theta_i() => ThetaI::Column,
@@ -76,6 +73,15 @@ pub fn of(
         sigma_ln: None,
         ..About::default()
     }
+}
+
+/// The names of the columns that are not used.
+pub fn unused(columns: &Columns) -> Arc<[String]> {
+    let title = |column: usize| match columns.heads[column].text.as_str() {
+        "" => format!("column {}", column + 1),
+        name => name.to_string(),
+    };
+    columns.unused.iter().map(|&(column, _)| title(column)).collect()
 }
 
 /// What a column of values holds, for people.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::about;
 use super::unused::Seen;
 use crate::error::{Error, shown};
+use crate::input::about::About;
 use crate::input::columns::{Azimuth, Columns, Polar, Value, WeightKind};
 use crate::input::facts::Facts;
 use crate::input::head::Head;
@@ -28,26 +29,26 @@ pub struct Scan {
     pub polarisation: Option<String>,
 }
 
+/// What stands between the parts of a key, and in no cell.
+const BETWEEN: char = '\u{1}';
+
 /// Sorts rows into scans.
 pub struct Sorter<'a> {
     columns: &'a Columns,
     options: &'a ReadOptions,
     facts: &'a Facts,
-    /// What a remark says, degrees.
-    theta_i: Option<f64>,
     decimal: Decimal,
     /// Each group of rows has so many scans: one a column of values, or of several at one angle each.
     width: usize,
-    /// The columns of values of each scan of a group.
-    together: Vec<Vec<usize>>,
-    /// The names of all columns.
-    names: Arc<[String]>,
+    /// What the scans of a group are before their first row.
+    empty: Vec<Empty>,
     /// The scans, group by group.
     pub scans: Vec<Scan>,
     /// Groups by what stands in the rows, and by what that means.
     by_text: HashMap<String, usize>,
-    by_name: HashMap<Vec<String>, usize>,
-    last: Option<(String, usize)>,
+    by_name: HashMap<String, usize>,
+    /// The text of the row before, and its group.
+    last: (String, Option<usize>),
     key: String,
     /// The columns that are not used.
     pub unused: Vec<Seen>,
@@ -64,19 +65,24 @@ impl<'a> Sorter<'a> {
         for (place, value) in columns.values.iter().enumerate() {
             together[value.scan].push(place);
         }
+        let names: Arc<[String]> = columns.heads.iter().map(|head| head.text.clone()).collect();
+        let unused = about::unused(columns);
+        let empty = together.iter().filter_map(|together| {
+            let value = &columns.values[*together.first()?];
+            let about = about::of(columns, value, together, &names, &unused, theta_i, facts.own);
+            Some(Empty::new(columns, value, about))
+        });
         Sorter {
             columns,
             options,
             facts,
-            theta_i,
             decimal: Decimal::Unknown,
             width,
-            together,
-            names: columns.heads.iter().map(|head| head.text.clone()).collect(),
+            empty: empty.collect(),
             scans: Vec::new(),
             by_text: HashMap::new(),
             by_name: HashMap::new(),
-            last: None,
+            last: (String::new(), None),
             key: String::new(),
             unused: columns.unused.iter().map(seen).collect(),
             unit: None,
@@ -125,6 +131,10 @@ impl<'a> Sorter<'a> {
             };
             let raw = &mut self.scans[group * self.width + value.scan].raw;
             raw.about.sigma_ln = sigma_ln;
+            // Thousands of scans may have one row each.
+            if raw.rows.len() == raw.rows.capacity() {
+                raw.rows.reserve_exact(raw.rows.len().max(1));
+            }
             raw.rows.push(row);
         }
         Ok(())
@@ -172,9 +182,9 @@ impl<'a> Sorter<'a> {
         self.key.clear();
         for &column in telling {
             self.key.push_str(cells[column]);
-            self.key.push('\u{1}');
+            self.key.push(BETWEEN);
         }
-        if let Some((key, group)) = &self.last
+        if let (key, Some(group)) = &self.last
             && *key == self.key
         {
             return Ok(*group);
@@ -187,7 +197,8 @@ impl<'a> Sorter<'a> {
                 group
             }
         };
-        self.last = Some((self.key.clone(), group));
+        self.last.0.clone_from(&self.key);
+        self.last.1 = Some(group);
         Ok(group)
     }
 
@@ -204,15 +215,17 @@ impl<'a> Sorter<'a> {
             None => self.facts.polarisation.as_deref().map(polarisation::name),
         };
         let splits: Vec<String> = columns.splits.iter().map(|&column| cells[column].to_string()).collect();
-        let mut name = splits.clone();
-        name.extend([&wavelength, &polarisation].into_iter().flatten().cloned());
+        let mut name = String::new();
+        for part in splits.iter().chain(&wavelength).chain(&polarisation) {
+            name.push_str(part);
+            name.push(BETWEEN);
+        }
         let groups = self.by_name.len();
         let group = *self.by_name.entry(name).or_insert(groups);
         if group == groups {
-            let first = self.together.iter().filter_map(|places| places.first());
-            let of_value = |&place: &usize| self.scan(&columns.values[place], &splits, &wavelength, &polarisation);
-            let scans: Vec<Scan> = first.map(of_value).collect();
-            self.scans.extend(scans);
+            let scans = self.empty.iter();
+            self.scans
+                .extend(scans.map(|empty| empty.scan(&splits, &wavelength, &polarisation)));
         }
         Ok(group)
     }
@@ -240,50 +253,6 @@ impl<'a> Sorter<'a> {
         Ok(wavelength::name(nanometres))
     }
 
-    /// An empty scan of one column of values in one group.
-    fn scan(
-        &self,
-        value: &Value,
-        splits: &[String],
-        wavelength: &Option<String>,
-        polarisation: &Option<String>,
-    ) -> Scan {
-        let columns = self.columns;
-        let place = |column: usize| column as u64 + 1;
-        let head = &columns.heads[value.column];
-        let of_name = value.name.as_deref().map(Head::new);
-        let of_channel = of_name.as_ref().and_then(channel::polarisation);
-        let of_channel = of_channel.or_else(|| channel::polarisation(head)).map(str::to_string);
-        // Of an angle each there are several columns.
-        let is_only = value.angle.is_none();
-        let names = value.name.iter().chain(wavelength).chain(polarisation);
-        Scan {
-            raw: RawScan {
-                quantity: value.quantity,
-                places: Places {
-                    theta_i: columns.theta_i.map(place),
-                    theta_s: columns.theta_s.map(place),
-                    phi: columns.azimuth.map(|azimuth| match azimuth {
-                        Azimuth::Difference(column) | Azimuth::Of(column, _) => place(column),
-                    }),
-                    value: is_only.then(|| place(value.column)),
-                    weight: value.weight.filter(|_| is_only).map(|(column, _)| place(column)),
-                },
-                about: about::of(
-                    columns,
-                    value,
-                    &self.together[value.scan],
-                    &self.names,
-                    self.theta_i,
-                    self.facts.own,
-                ),
-                ..RawScan::new(names.cloned().collect(), columns.angles)
-            },
-            splits: splits.to_vec(),
-            polarisation: polarisation.clone().or(of_channel),
-        }
-    }
-
     fn see_unit(&mut self, column: usize, cell: &str) -> Result<(), Error> {
         match &self.unit {
             None => self.unit = Some((column, cell.to_string())),
@@ -302,6 +271,59 @@ impl<'a> Sorter<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// A scan before its first row, of which each group has its own.
+struct Empty {
+    raw: RawScan,
+    /// What the head of the values says.
+    polarisation: Option<String>,
+    /// What tells its values from others of a group.
+    name: Option<String>,
+}
+
+impl Empty {
+    /// Of one column of values, or of several at one angle each of which this is the first.
+    fn new(columns: &Columns, value: &Value, about: About) -> Empty {
+        let place = |column: usize| column as u64 + 1;
+        let head = &columns.heads[value.column];
+        let of_name = value.name.as_deref().map(Head::new);
+        let polarisation = of_name.as_ref().and_then(channel::polarisation);
+        let polarisation = polarisation.or_else(|| channel::polarisation(head));
+        // Of an angle each there are several columns.
+        let is_only = value.angle.is_none();
+        Empty {
+            raw: RawScan {
+                quantity: value.quantity,
+                places: Places {
+                    theta_i: columns.theta_i.map(place),
+                    theta_s: columns.theta_s.map(place),
+                    phi: columns.azimuth.map(|azimuth| match azimuth {
+                        Azimuth::Difference(column) | Azimuth::Of(column, _) => place(column),
+                    }),
+                    value: is_only.then(|| place(value.column)),
+                    weight: value.weight.filter(|_| is_only).map(|(column, _)| place(column)),
+                },
+                about,
+                ..RawScan::new(Vec::new(), columns.angles)
+            },
+            polarisation: polarisation.map(str::to_string),
+            name: value.name.clone(),
+        }
+    }
+
+    /// That of one group.
+    fn scan(&self, splits: &[String], wavelength: &Option<String>, polarisation: &Option<String>) -> Scan {
+        let names = self.name.iter().chain(wavelength).chain(polarisation);
+        Scan {
+            raw: RawScan {
+                names: names.cloned().collect(),
+                ..self.raw.clone()
+            },
+            splits: splits.to_vec(),
+            polarisation: polarisation.clone().or_else(|| self.polarisation.clone()),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 %
 %   brdfit_fit            - the parameters at the global optimum, their minima, their standard errors, and the residuals
 %   brdfit_brdf           - the BRDF of a model at any angles
-%   brdfit_build          - compiles the MEX from the static library of core/capi
+%   brdfit_build          - compiles the MEX from its static library
 %
 %   test_brdfit           - tests
 %   compare_lsqcurvefit   - the paper's sets fitted by lsqcurvefit and by brdfit_fit

@@ -1,18 +1,18 @@
 function brdfit_build(library)
-% BRDFIT_BUILD  Compiles the MEX from the static library of core/capi.
+% BRDFIT_BUILD  Compiles the MEX from the static library of this folder.
 %
-%   brdfit_build                                % target/release/libbrdfit_capi.a of the repository
-%   brdfit_build('somewhere/libbrdfit_capi.a')
+%   brdfit_build                                % target/release/libbrdfit_matlab.a of the repository
+%   brdfit_build('somewhere/libbrdfit_matlab.a')
 %
-%   First: cargo rustc --release -p brdfit-capi --lib --crate-type staticlib
+%   First: cargo build --release -p brdfit-matlab
 
     here = fileparts(mfilename('fullpath'));
     root = fullfile(here, '..', '..');
     if nargin < 1
-        library = fullfile(root, 'target', 'release', 'libbrdfit_capi.a');
+        library = fullfile(root, 'target', 'release', 'libbrdfit_matlab.a');
     end
     if ~exist(library, 'file')
-        error('brdfit:noLibrary', 'brdfit_build: %s is not there: cargo rustc --release -p brdfit-capi --lib --crate-type staticlib', library);
+        error('brdfit:noLibrary', 'brdfit_build: %s is not there: cargo build --release -p brdfit-matlab', library);
     end
     source = fullfile(here, 'private', 'brdfit_mex.c');
     include = ['-I' fullfile(root, 'core', 'capi', 'include')];

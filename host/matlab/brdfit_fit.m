@@ -17,12 +17,16 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %   exitflag  1: converged, 2: converged as far as rounding allows, 0: too many evaluations, as in lsqcurvefit
 %   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17),
 %             .model (its name), .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits),
-%             .stderr (standard errors of x; 0 where absent, held or on a bound, very large where nothing is known),
-%             .correlation (6 x 6), .scale (standard deviation of a residual), .condition (of the scaled J'J; above about
-%             1e6 some parameters are known only together)
+%             .stderr (standard errors of x; 0 where absent, held or on a bound, Inf where nothing is known),
+%             .correlation (6 x 6), .coverage_factor_95 (so many standard errors are the half of a 95 % interval),
+%             .effective_degrees_of_freedom, .correlated_over_deg (angle over which residuals are alike; NaN if they are
+%             independent), .error_factor (least and largest factor by which that raises the errors), .scale (standard
+%             deviation of a residual), .condition (of the scaled J'J; above about 1e6 some parameters are known only
+%             together)
 %
-%   The standard errors are for residuals that are independent, as nlparci has them. Where residuals wander along the
-%   angle, as those of most measured scans do, the errors are larger: the program and the Python package estimate that.
+%   The errors are those of the program and of the Python package: where residuals wander along the angle, as those of
+%   most measured scans do, they are larger than those of nlparci, which are for independent residuals. With options.sigma
+%   they are those of sigma, unless chi^2 refutes it. They are of the minimum that x leads to, where a fit was stopped.
 %
 %   options is a struct with any of these fields; empty ones count as not given:
 %   delta_phi    azimuth of scattering less that of incidence in degrees; 180, in plane
@@ -81,6 +85,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     numbers = [whole('seed', settings.seed, 0, 2^53), terms_number(settings.terms), ...
         whole('candidates', settings.candidates, 1, 2^32 - 1), whole('MaxFunEvals', settings.MaxFunEvals, 1, 2^32 - 1), ...
         number('TolFun', settings.TolFun), number('TolX', settings.TolX)];
+    has_sigma = double(~isempty(settings.sigma));
 
     models = {settings.model};
     if strcmp(settings.model, 'auto')
@@ -88,7 +93,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     end
     resnorm = Inf;
     for k = 1:numel(models)
-        [fitted{1:5 + (nargout > 4)}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k})], ...
+        [fitted{1:5 + (nargout > 4)}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k}), has_sigma], ...
             bound('lb', settings.lb), bound('ub', settings.ub));
         if fitted{2} < resnorm
             [x, resnorm, stop, passes, minima] = fitted{1:5};
@@ -108,10 +113,14 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
         output = struct('iterations', passes(1), 'funcCount', passes(2) + passes(3), ...
             'algorithm', 'global search with bounded Levenberg-Marquardt', 'message', messages{stop}, ...
             'mse2', resnorm / numel(f)^2, 'model', model);
-        output.stderr = known(:, 1).';
-        output.correlation = known(:, 2:7);
-        output.scale = known(1, 8);
-        output.condition = known(2, 8);
+        output.stderr = known(1:6);
+        output.correlation = reshape(known(7:42), 6, 6);
+        output.coverage_factor_95 = known(43);
+        output.effective_degrees_of_freedom = known(44);
+        output.correlated_over_deg = known(45);
+        output.error_factor = known(46:47);
+        output.scale = known(48);
+        output.condition = known(49);
         output.minima = struct('x', {}, 'resnorm', {}, 'mse2', {}, 'hits', {});
         for k = 1:size(minima, 2)
             output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k), ...

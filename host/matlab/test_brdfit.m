@@ -38,7 +38,7 @@ function test_brdfit(expected, expected_ggx)
         assert(isequal(brdfit_fit(ti, ts, f, struct('sigma', f, 'delta_phi', 180, 'seed', [])), x));
         if nargin > 0
             same_bits(expected, k, x, output.mse2);
-            same_errors(expected, k, output.stderr);
+            same_errors(expected, k, output);
         end
         % GGX, and the better of both.
         [y, resnorm_y, residual_y, ~, output_y] = brdfit_fit(ti, ts, f, struct('model', 'ggx'));
@@ -49,6 +49,7 @@ function test_brdfit(expected, expected_ggx)
         assert(resnorm_z == min(resnorm, resnorm_y) && isequal(z, x) == strcmp(output_z.model, 'beckmann'));
         if nargin > 1
             same_bits(expected_ggx, k, y, output_y.mse2);
+            same_errors(expected_ggx, k, output_y);
         end
     end
 
@@ -75,6 +76,12 @@ function test_brdfit(expected, expected_ggx)
     close_to(output.stderr(free), sqrt(diag(covariance)).', 1e-5);
     assert(isequal(output.stderr([3 5 6]), [0 0 0]));
     close_to(output.correlation(1, 2), covariance(1, 2) / sqrt(covariance(1, 1) * covariance(2, 2)), 1e-4);
+    % Errors of a sigma that chi^2 does not refute are its own, whatever the residuals; of one that it does, those of these.
+    scale = output.scale;
+    [~, ~, ~, ~, own] = brdfit_fit(ti, ts, f, setfield(options, 'sigma', scale * f));
+    [~, ~, ~, ~, refuted] = brdfit_fit(ti, ts, f, setfield(options, 'sigma', 10 * scale * f));
+    close_to(own.stderr(free), output.stderr(free), 0.2);
+    close_to(refuted.stderr(free), output.stderr(free), 0.2);
     % Twice the sigma is a quarter of resnorm; a sample with a large one hardly counts.
     [~, half] = brdfit_fit(ti, ts, f, struct('sigma', 2 * f));
     close_to(half, resnorm / 4, 1e-12);
@@ -142,18 +149,21 @@ function value = row_of(file, row)
     value = @(name) str2double(cells{strcmp(columns, name)});
 end
 
-function same_errors(file, row, errors)
+function same_errors(file, row, output)
     value = row_of(file, row);
-    % Test data 2 is one of the scans whose residuals look correlated, for which the program has other errors.
-    assert(isnan(value('correlated_over_deg')) == (row ~= 2));
-    if row == 2
-        return
-    end
     names = {'rho_d', 'rho_s', 'rho_v', 'm', 'n', 'kappa'};
-    for p = find(errors > 0)
-        % Measured 3.7e-6, where kappa is on its bound and may lie inside.
-        close_to(errors(p), value(['stderr_' names{p}]), 1e-5);
+    for p = 1:6
+        assert(same(output.stderr(p), value(['stderr_' names{p}])), '%s: %g and %g', names{p}, output.stderr(p), value(['stderr_' names{p}]));
     end
+    assert(same(output.coverage_factor_95, value('coverage_factor_95')));
+    assert(same(output.correlated_over_deg, value('correlated_over_deg')));
+    assert(isnan(output.correlated_over_deg) == isequal(output.error_factor, [1 1]));
+    assert(isnan(output.correlated_over_deg) || same(output.error_factor(2), value('error_factor')));
+end
+
+% An empty cell stands for none. The errors of the fit once more may differ in the last digits.
+function yes = same(found, expected)
+    yes = isequaln(found, expected) || abs(found / expected - 1) < 1e-9 || (isnan(expected) && found == 0);
 end
 
 function same_bits(file, row, x, mse2)

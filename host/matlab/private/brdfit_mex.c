@@ -5,9 +5,11 @@
  *   f = brdfit_mex ("brdf", directions, x, model)
  *
  * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, weight. settings is [seed, terms,
- * candidates, max_passes, cost_tolerance, step_tolerance, model], where NaN stands for the usual value. passes is [of the
- * best fit, without derivatives, with derivatives], minima 8 x k: parameters, cost, hits, and known 6 x 8: standard
- * errors, correlations, [scale; condition; 0; 0; 0; 0]. directions is 3 x n.
+ * candidates, max_passes, cost_tolerance, step_tolerance, model, sigma], where NaN stands for the usual value and sigma
+ * is 1 if weights are brdf / sigma, else 0. passes is [of the best fit, without derivatives, with derivatives], minima
+ * 8 x k: parameters, cost, hits, and known 1 x 49: standard errors, correlations, the coverage factor of 95 %, the
+ * effective degrees of freedom, the angle over which residuals are correlated in degrees or NaN, the least and the
+ * largest factor of that on errors; scale, condition. directions is 3 x n.
  * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
  */
 #include <stdint.h>
@@ -17,6 +19,16 @@
 #include "mex.h"
 
 #define MINIMA 32
+/* Numbers that brdfit_matlab_known writes. */
+#define KNOWN 47
+
+/* host/matlab/src/lib.rs */
+typedef struct {
+    uint64_t seed;
+    uint32_t candidates, terms, ggx, sigma;
+} asked_of_search;
+int32_t brdfit_matlab_known(const double *samples, size_t count, const asked_of_search *asked, const double *lower,
+                            const double *upper, const double *x, double *to);
 
 /* What the program calls brdfit:... */
 static const char *identifier(brdfit_error error) {
@@ -75,7 +87,7 @@ static void put_params(double *x, const brdfit_params_f64 *params) {
 static mxArray *scalar(double value) { return mxCreateDoubleScalar(value); }
 
 static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
-    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 7);
+    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 8);
     const size_t count = mxGetN(input[1]), blocks = BRDFIT_BLOCKS(count);
     brdfit_scan_f64 scan;
     brdfit_options_f64 options;
@@ -130,13 +142,19 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
     }
     if (outputs > 5) {
         brdfit_uncertainty_f64 known;
+        const asked_of_search asked = {options.seed, mxIsNaN(settings[2]) ? 0 : options.candidates, options.terms,
+                                       options.model != BRDFIT_MODEL_BECKMANN, settings[7] != 0};
         check(brdfit_uncertainty_at_f64(&scan, &options, &found.best.params, &known));
-        output[5] = mxCreateDoubleMatrix(6, 8, mxREAL);
+        output[5] = mxCreateDoubleMatrix(1, KNOWN + 2, mxREAL);
         double *values = mxGetPr(output[5]);
-        put_params(values, &known.standard_errors);
-        memcpy(values + 6, known.correlations, sizeof known.correlations);
-        values[42] = known.scale;
-        values[43] = known.condition;
+        /* Its threads stay, so the code must. */
+        if (!mexIsLocked())
+            mexLock();
+        if (brdfit_matlab_known(samples, count, &asked, mxGetPr(input[3]), mxGetPr(input[4]), mxGetPr(output[0]),
+                                values))
+            check(BRDFIT_ERROR_NO_FIT);
+        values[KNOWN] = known.scale;
+        values[KNOWN + 1] = known.condition;
     }
 }
 

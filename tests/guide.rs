@@ -87,6 +87,29 @@ fn every_command_runs() {
     assert!(ran >= 20);
 }
 
+/// Between its dots the JSON of the guide stands in what the program prints, piece by piece.
+#[test]
+fn json_of_the_guide_is_what_the_program_prints() {
+    let squeezed = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
+    let page = fs::read_to_string(Path::new(ROOT).join("host/src/guide/results.md")).unwrap();
+    let sample = page
+        .split("```text\n{")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    let sample = squeezed(sample.expect("a sample of JSON"));
+    std::env::set_current_dir(ROOT).unwrap();
+    let ran = program::brdfit(&["fit", "tests/data/testdata1_sym_seed1.csv", "--format", "json"], b"");
+    let printed = squeezed(&ran.output);
+    let mut at = 0;
+    for piece in sample.split("...") {
+        // Brackets and commas beside dots part what was left out.
+        let piece = piece.trim_matches([',', '}', ']', '{', '[']);
+        let found = printed[at..].find(piece);
+        at += found.unwrap_or_else(|| panic!("the program does not print {piece}")) + piece.len();
+    }
+    assert!(sample.split("...").count() > 10 && at < printed.len());
+}
+
 #[test]
 fn every_link_leads_to_a_file() {
     for (page, text) in pages() {

@@ -91,14 +91,27 @@ fn uncertainties_and_their_coverage() {
         ("2 sigma", 0.04, &[]),
         ("u_c", 0.02, &[]),
         ("+/-", 0.02, &[]),
+        ("\"U, k=2 [1/sr]\"", 0.04, &[]),
     ] {
         let found = chi2(head, &|f| factor * f, options);
         assert!((found / right - 1.0).abs() < 1e-9, "{head}: {found} {right}");
     }
-    for (head, value) in [("u (%)", 2.0), ("rel. uncertainty", 0.02), ("\"U (k=2, %)\"", 4.0)] {
+    for (head, value) in [
+        ("u (%)", 2.0),
+        ("rel. uncertainty", 0.02),
+        ("\"U (k=2, %)\"", 4.0),
+        ("rel. expanded uncertainty k=2 [%]", 4.0),
+    ] {
         let found = chi2(head, &|_| value, &[]);
         // The deviations above are parts of the measured f, and weigh with the fitted one.
         assert!((found / right - 1.0).abs() < 0.01, "{head}: {found} {right}");
+    }
+    for head in ["u (10^-3 sr^-1)", "sigma [mV]"] {
+        let message = fail(&["fit", &table(head, &|f| 20.0 * f)]);
+        assert!(
+            message.contains("is in another unit than sr^-1") && message.contains("--ignore 4"),
+            "{message}"
+        );
     }
     for head in ["U", "U95", "CI 95"] {
         let message = fail(&["fit", &table(head, &|f| 0.04 * f)]);

@@ -24,7 +24,14 @@ fn values_in_percent_and_in_no_unit_of_a_brdf() {
         };
         assert_eq!(found["parameters"], right["parameters"], "{head}");
     }
-    for head in ["BRDF (mV)", "brdf [counts]", "BRDF (a.u.)", "brdf_mV", "BRDF (W/m2/sr)"] {
+    for head in [
+        "BRDF (mV)",
+        "brdf [counts]",
+        "BRDF (a.u.)",
+        "brdf_mV",
+        "BRDF (W/m2/sr)",
+        "BRDF (10^-3 sr^-1)",
+    ] {
         let file = write(&folder, "scan.csv", text.replace("BRF (%)", head));
         let message = fail(&["fit", &file]);
         assert!(

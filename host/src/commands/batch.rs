@@ -136,7 +136,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let job = run::Job {
         files: &files,
         wanted: &wanted.until(Until::set(interrupt)),
-        models,
+        columns: run::timeless(&models),
         read: &arguments.read,
         rows: head.rows,
         goal,

@@ -210,6 +210,8 @@ pub fn of_unit(unit: Option<Unit>, name: &str) -> Result<f64, Error> {
     match unit {
         Some(Unit::Percent) => Ok(100.0),
         // Of a channel, the length is its wavelength.
+        Some(Unit::Multiple) => Err(Error::new(format!("'{}' is in a multiple of sr^-1", shown(name)))
+            .help("write the values in sr^-1, or take the numbers as they are with --value-unit plain")),
         None | Some(Unit::PerSr | Unit::One | Unit::Length(_) | Unit::PerCm) => Ok(1.0),
         Some(Unit::Foreign | Unit::Deg | Unit::Rad) => Err(Error::new(format!(
             "'{}' is not in sr^-1, so it is no BRDF before it is calibrated",

@@ -162,6 +162,14 @@ fn kind(head: &Head, named: &Named, value: &Head, column: usize, options: &ReadO
         return Ok(WeightKind::Factor);
     }
     let name = shown(&head.text);
+    if matches!(head.unit, Some(Unit::Multiple | Unit::Foreign)) && options.value_unit.is_none() {
+        return Err(
+            Error::new(format!("'{name}' is in another unit than sr^-1")).help(format!(
+                "give it in sr^-1, or leave it out with --ignore {}",
+                column + 1
+            )),
+        );
+    }
     let coverage = match head.coverage.or(named.times).or(options.coverage) {
         Some(factor) => factor,
         None if named.expanded => {

@@ -9,6 +9,8 @@ pub enum Unit {
     Rad,
     /// sr^-1.
     PerSr,
+    /// A power of ten of sr^-1, as `10^-3 sr^-1`.
+    Multiple,
     /// None, as of a ratio.
     One,
     /// Percent.
@@ -137,12 +139,15 @@ impl Unit {
         // Radiances and intensities, such as W/m2/sr, are no BRDF.
         let physical = ["w/", "cd/", "mw/", "w·", "lx", "lux", "cd", "lm/"];
         let known = SPELLINGS.iter().find(|(spelling, _)| *spelling == spelt);
-        known.map(|&(_, unit)| unit).or_else(|| {
-            physical
-                .iter()
-                .any(|start| spelt.starts_with(start))
-                .then_some(Unit::Foreign)
-        })
+        known
+            .map(|&(_, unit)| unit)
+            .or_else(|| is_multiple(&spelt).then_some(Unit::Multiple))
+            .or_else(|| {
+                physical
+                    .iter()
+                    .any(|start| spelt.starts_with(start))
+                    .then_some(Unit::Foreign)
+            })
     }
 
     /// A name without the unit that it ends in, and that unit: after a slash, a colon, a space or an underscore, or glued as in `thetadeg`.
@@ -192,6 +197,18 @@ impl Unit {
     }
 }
 
+/// True of a power of ten in front of sr^-1, or behind a sign of multiplication.
+fn is_multiple(spelt: &str) -> bool {
+    let marked = spelt.strip_prefix(['x', '×', '·']);
+    let rest = marked.unwrap_or(spelt);
+    let is_power = |c: char| c.is_ascii_digit() || "e+-−⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹·×".contains(c);
+    let known = SPELLINGS.iter().filter(|(_, unit)| *unit == Unit::PerSr);
+    let mut powers = known
+        .filter_map(|(spelling, _)| rest.strip_suffix(spelling))
+        .chain(marked);
+    powers.any(|power| power.len() > 2 && power.starts_with('1') && power.chars().all(is_power))
+}
+
 /// True of a text that is a unit in brackets, and in a name may be another thing.
 fn ambiguous(after: &str, mark: char) -> bool {
     let plain = after.trim().to_lowercase();
@@ -228,6 +245,13 @@ mod tests {
             assert_eq!(Unit::at_end(name), (short, unit), "{name}");
         }
         assert_eq!(Unit::parse("[1 / sr]"), Some(Unit::PerSr));
+        for multiple in ["(10^-3 sr^-1)", "10⁻³ sr⁻¹", "x10^-3 1/sr", "1e-3 sr-1", "×10^3"] {
+            assert_eq!(Unit::parse(multiple), Some(Unit::Multiple), "{multiple}");
+        }
+        assert_eq!(
+            (Unit::parse("1e-3"), Unit::parse("x10"), Unit::parse("100")),
+            (None, None, None)
+        );
         assert_eq!(Unit::parse("W/m^2/sr"), Some(Unit::Foreign));
         assert_eq!(Unit::parse("sample"), None);
     }

@@ -25,8 +25,8 @@ pub struct Job<'a> {
     pub files: &'a [PathBuf],
     /// What they are fitted with.
     pub wanted: &'a Wanted,
-    /// The models that results can be of.
-    pub models: Vec<&'static Model>,
+    /// The columns of a row, which are the same for every scan.
+    pub columns: Vec<Column>,
     /// How they are read.
     pub read: &'a ReadOptions,
     /// What is kept.
@@ -99,7 +99,7 @@ fn fitted(job: &Job, mut scan: FittedScan, measurement: &Measurement) -> ScanRec
     scan.forget_times();
     let row = match job.rows {
         Rows::Objects => Written::Object(result::json(std::slice::from_ref(&scan)).trim_end().to_string()),
-        Rows::Cells => Written::Cells(cells(&job.models, |column| column.cell(&(&scan).into()), Cell::Empty)),
+        Rows::Cells => Written::Cells(cells(&job.columns, |column| column.cell(&(&scan).into()), Cell::Empty)),
     };
     ScanRecord {
         row,
@@ -136,7 +136,7 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> ScanRecor
                 "scan" => scan.map_or(Cell::Empty, |scan| Cell::Text(scan.to_string())),
                 _ => Cell::Empty,
             };
-            Written::Cells(cells(&job.models, known, Cell::Text(error.to_string())))
+            Written::Cells(cells(&job.columns, known, Cell::Text(error.to_string())))
         }
     };
     ScanRecord {
@@ -147,7 +147,9 @@ fn failed(job: &Job, file: &str, scan: Option<&str>, error: &Error) -> ScanRecor
 
 /// The columns of a table of results: those of a fit without its time, and why there is none.
 pub fn columns(models: &[&Model]) -> Vec<(String, Kind)> {
-    let mut columns: Vec<_> = timeless(models)
+    let columns = timeless(models);
+    let mut columns: Vec<_> = columns
+        .iter()
         .map(|column| (column.name.clone(), column.kind()))
         .collect();
     columns.push(("error".into(), Kind::Text));
@@ -155,10 +157,13 @@ pub fn columns(models: &[&Model]) -> Vec<(String, Kind)> {
 }
 
 /// A row of these.
-fn cells(models: &[&Model], of: impl Fn(&Column) -> Cell, error: Cell) -> Vec<Cell> {
-    timeless(models).map(|column| of(&column)).chain([error]).collect()
+fn cells(columns: &[Column], of: impl Fn(&Column) -> Cell, error: Cell) -> Vec<Cell> {
+    columns.iter().map(of).chain([error]).collect()
 }
 
-fn timeless(models: &[&Model]) -> impl Iterator<Item = Column> {
-    of_fits(models).into_iter().filter(|column| column.json != Json::Time)
+/// Those of a fit of one of these models but its time, which differs from run to run.
+pub fn timeless(models: &[&Model]) -> Vec<Column> {
+    let mut columns = of_fits(models);
+    columns.retain(|column| column.json != Json::Time);
+    columns
 }

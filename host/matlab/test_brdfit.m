@@ -62,8 +62,12 @@ function test_brdfit(expected, expected_ggx)
     [~, resnorm_y, ~, flag] = brdfit_fit(ti, ts, f, struct('MaxFunEvals', 1, 'candidates', 1));
     assert(flag == 0 && resnorm_y > resnorm);
     % What nlparci would say of three parameters, with derivatives by differences.
+    % The residuals are independent: noise in equal parts above and below the model.
     options = struct('lb', [0 0 0.05 1e-5 1.5 0.5], 'ub', [1 100 0.05 10 1.5 0.5]);
-    [y, resnorm_y, ~, ~, output] = brdfit_fit(ti, ts, f, options);
+    signs = 1 - 2 * mod(floor((1:numel(f)).' .^ 2 * 0.6180339887), 2);
+    noisy = eq14([0.1 5 0.05 0.1 1.5 0.5], ti, ts) .* (1 + 0.03 * signs);
+    [y, resnorm_y, ~, ~, output] = brdfit_fit(ti, ts, noisy, options);
+    assert(isnan(output.correlated_over_deg));
     free = [1 2 4];
     for k = 1:3
         [up, down] = deal(y);
@@ -78,8 +82,8 @@ function test_brdfit(expected, expected_ggx)
     close_to(output.correlation(1, 2), covariance(1, 2) / sqrt(covariance(1, 1) * covariance(2, 2)), 1e-4);
     % Errors of a sigma that chi^2 does not refute are its own, whatever the residuals; of one that it does, those of these.
     scale = output.scale;
-    [~, ~, ~, ~, own] = brdfit_fit(ti, ts, f, setfield(options, 'sigma', scale * f));
-    [~, ~, ~, ~, refuted] = brdfit_fit(ti, ts, f, setfield(options, 'sigma', 10 * scale * f));
+    [~, ~, ~, ~, own] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', scale * noisy));
+    [~, ~, ~, ~, refuted] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', 10 * scale * noisy));
     close_to(own.stderr(free), output.stderr(free), 0.2);
     close_to(refuted.stderr(free), output.stderr(free), 0.2);
     % Twice the sigma is a quarter of resnorm; a sample with a large one hardly counts.

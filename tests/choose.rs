@@ -10,7 +10,7 @@ use brdfit::analysis::profile::calibrate::threshold;
 use brdfit::engine::{self, FitOptions, Material};
 use brdfit::result::words;
 use brdfit::terms::term_names;
-use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, SURFACE, has, parameters};
+use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, SURFACE, VOLUME, has, parameters};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program;
 use brdfit_suite::scan::{data, scan, six};
@@ -62,6 +62,65 @@ fn finds_the_terms_of_a_scene() {
     }
     // 19 of 20 are asked for.
     assert!(right * 20 >= all * 19, "{right} of {all}");
+}
+
+/// Two angles of a scene whose errors of ln f are an AR process of 8 degrees.
+fn wandering(truth: &Material, copy: u64) -> Vec<Sample<f64>> {
+    let mut noise = Noise::new(21, copy);
+    let mut samples = Vec::new();
+    for theta_i in [20.0f64, 60.0] {
+        let (kept, mut own) = ((-2.0f64 / 8.0).exp(), noise.normal());
+        for theta_s in (-84..=84).step_by(2) {
+            own = kept * own + (1.0 - kept * kept).sqrt() * noise.normal();
+            let sample = Sample::in_plane(theta_i.to_radians(), f64::from(theta_s).to_radians(), 1.0);
+            let ln_f = truth.ln_f(&sample).unwrap() + 0.05 * own;
+            samples.push(Sample {
+                brdf: ln_f.exp(),
+                ..sample
+            });
+        }
+    }
+    samples
+}
+
+/// What wanders is no lobe: with the criteria of independent residuals half of such scans of Lambert's law have one, and the F test finds one in more than half.
+#[test]
+fn residuals_that_wander_buy_no_terms() {
+    let copies = 24;
+    for (params, terms, more) in [
+        ([0.2, 0.0, 0.0, 0.2, 1.5, 0.0], DIFFUSE, DIFFUSE | SURFACE),
+        (
+            [0.05, 1.0, 0.0, 0.2, 1.5, 0.0],
+            DIFFUSE | SURFACE,
+            DIFFUSE | SURFACE | VOLUME,
+        ),
+        ([0.1, 1.0, 1.0, 0.15, 1.5, 0.0], DIFFUSE | SURFACE | VOLUME, ALL),
+    ] {
+        let (mut right, mut plain, mut correlated, mut rejected) = (0, 0, 0, 0);
+        for copy in 0..copies {
+            let samples = wandering(&Material::paper(params), copy);
+            let count = samples.len() as f64;
+            let choice = choose::choose(&samples, &sets(&FitOptions::default())).unwrap();
+            let independent = |one: &&choose::Candidate| {
+                count * (one.outcome.cost / count).ln() + (one.criteria.parameters as f64 + 1.0) * count.ln()
+            };
+            let least = choice
+                .candidates
+                .iter()
+                .min_by(|a, b| independent(a).total_cmp(&independent(b)));
+            plain += u64::from(least.unwrap().options.terms == terms);
+            right += u64::from(choice.chosen().options.terms == terms);
+            correlated += u64::from(choice.process.is_some_and(|process| process.length > 0.05));
+            let larger = choice.candidates.iter().find(|one| one.options.terms == more).unwrap();
+            rejected += u64::from(larger.p_value.unwrap() < 0.05);
+        }
+        println!(
+            "{terms}: {right} of {copies} right, {plain} by independent residuals; {correlated} correlated; F rejects the truth in {rejected}"
+        );
+        assert!(10 * right >= 8 * copies && right > plain, "{terms}: {right}, {plain}");
+        assert!(correlated + 1 >= copies, "{correlated}");
+        assert!(rejected <= 5, "{rejected}");
+    }
 }
 
 /// AICc and BIC as in Burnham and Anderson (2002), and the F test.

@@ -41,7 +41,7 @@ fn file(absolute: f64, relative: f64, head: &str, copy: u64) -> String {
 
 /// Mean pull of rho_d and m, the share of their 95 % intervals that hold the truth, and of scans whose deviations are believed.
 fn pulls(absolute: f64, relative: f64, head: &str) -> ([f64; 2], f64, f64) {
-    let copies = 60;
+    let copies = 200;
     let mut options = FitOptions {
         terms: DIFFUSE | SURFACE,
         ..FitOptions::default()
@@ -67,7 +67,7 @@ fn pulls(absolute: f64, relative: f64, head: &str) -> ([f64; 2], f64, f64) {
     (sums, held / copies as f64, used / copies as f64)
 }
 
-/// The mean of 60 pulls is known to 0.13, and a share of 95 % to 2 %.
+/// The mean of 200 pulls is known to 0.07, and a share of 95 % to 1.2 %; of 300 the means are at most 0.05, and the shares 94 to 96 %.
 #[test]
 fn errors_of_the_file_are_unbiased_and_hold() {
     let cases = [
@@ -80,11 +80,11 @@ fn errors_of_the_file_are_unbiased_and_hold() {
         let (mean, held, used) = pulls(absolute, relative, head);
         println!("{absolute} {relative} {head}: pulls {mean:?}, held {held}, believed {used}");
         assert!(
-            mean.iter().all(|mean| mean.abs() < 0.4),
+            mean.iter().all(|mean| mean.abs() < 0.2),
             "{absolute} {relative}: {mean:?}"
         );
-        assert!((0.88..=0.99).contains(&held), "{absolute} {relative}: {held}");
-        assert!(used > 0.75, "{absolute} {relative}: {used}");
+        assert!((0.93..=0.97).contains(&held), "{absolute} {relative}: {held}");
+        assert!(used > 0.9, "{absolute} {relative}: {used}");
     }
 }
 

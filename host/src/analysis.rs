@@ -16,6 +16,7 @@ pub mod paper_sets;
 pub mod profile;
 pub mod proof;
 mod quadrature;
+pub mod range;
 pub mod reflectance;
 pub mod repeats;
 pub mod stability;

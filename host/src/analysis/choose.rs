@@ -7,6 +7,7 @@ use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
+use super::misfit::{self, process::Process};
 use crate::engine::robust::{self, Robust};
 use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
 
@@ -138,6 +139,8 @@ pub struct Choice {
     pub candidates: Vec<Candidate>,
     /// Place of the chosen one.
     pub place: usize,
+    /// The correlation of residuals along the angle by which all are judged; `None` where it is not seen.
+    pub process: Option<Process>,
 }
 
 impl Choice {
@@ -293,9 +296,12 @@ pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, Fi
 /// The choice among fits of the same samples.
 fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result<Choice, FitError> {
     let mut candidates: Vec<Candidate> = Vec::new();
-    for (options, outcome) in fitted {
+    let outcomes: Vec<&Outcome> = fitted.iter().map(|(_, outcome)| outcome).collect();
+    let (process, costs) = misfit::costs(samples, &outcomes).unzip();
+    let costs = costs.unwrap_or_else(|| outcomes.iter().map(|outcome| outcome.cost).collect());
+    for ((options, outcome), cost) in fitted.into_iter().zip(costs) {
         let free = options.free().count();
-        let criteria = Criteria::new(counted(samples), free, outcome.cost, options.precision);
+        let criteria = Criteria::new(counted(samples), free, cost, options.precision);
         let tested = SETS.iter().find(|(terms, _)| *terms == options.terms);
         let smaller = candidates.iter().find(|other| {
             other.options.model == options.model && tested.is_some_and(|(_, set)| *set == Some(other.options.terms))
@@ -311,7 +317,11 @@ fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result
     let bic = |place: &usize| candidates[*place].criteria.bic;
     let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
     let place = place.ok_or(FitError::Terms(0))?;
-    Ok(Choice { candidates, place })
+    Ok(Choice {
+        candidates,
+        place,
+        process,
+    })
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub struct Criteria {
     pub parameters: usize,
     /// Samples of weight above 0.
     pub samples: f64,
-    /// Sum of squared residuals of ln f, but at least what rounding leaves.
+    /// Sum of squared residuals of ln f, by their correlation where that is seen, but at least what rounding leaves.
     cost: f64,
     /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
     pub aicc: f64,

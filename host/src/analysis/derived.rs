@@ -1,11 +1,13 @@
 //! What a fit determines at each angle of incidence, also where the parameters themselves are not determined.
 
-use std::f64::consts::{FRAC_PI_2, LN_2};
+use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 use brdfit_core::brdf::fresnel;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
+use super::misfit::coverage_factor;
+use super::range::told;
 use super::reflectance::reflectance;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values};
@@ -18,7 +20,7 @@ const HORIZON: f64 = 0.9989 * FRAC_PI_2;
 pub struct Value {
     /// The best value.
     pub value: f64,
-    /// Its standard error by the delta method.
+    /// Its standard error by the delta method; infinite where the 95 % interval is the whole range that it can have.
     pub stderr: f64,
 }
 
@@ -68,6 +70,8 @@ pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncer
 /// At one angle of incidence, radians.
 pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
     let slopes = material.off_zero();
+    let factor = coverage_factor(known);
+    // No surface reflects more than it receives.
     let value = |value: f64, mut gradient: Values| {
         for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
             // What a parameter of its own size does not change does not depend on it, however unknown that is.
@@ -76,7 +80,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
             }
         }
         let stderr = known.stderr_of(&gradient);
-        Value { value, stderr }
+        told(Value { value, stderr }, value.max(1.0), factor)
     };
     let product = |rho: &str| {
         let place = |name: &str| material.model.place(name);
@@ -101,7 +105,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
         theta_i,
         rho_s_f,
         rho_v_f: product("rho_v"),
-        peak: rho_s_f.and_then(|_| peak(theta_i, material, known)),
+        peak: rho_s_f.and_then(|product| peak(theta_i, material, known, product.value)),
         reflectance: {
             let (sum, gradient) = reflectance(material, theta_i);
             value(sum, gradient)
@@ -109,7 +113,8 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
     }
 }
 
-fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> {
+fn peak(theta_i: f64, material: &Material, known: &Uncertainty, product: f64) -> Option<Peak> {
+    let factor = coverage_factor(known);
     // The other terms do not belong to the lobe.
     const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
     let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));
@@ -136,17 +141,17 @@ fn peak(theta_i: f64, material: &Material, known: &Uncertainty) -> Option<Peak> 
     let width = half(HORIZON).zip(half(-HORIZON));
     let width = width.map(|((right, d_right), (left, d_left))| {
         let gradient = Values::from_fn(d_right.len(), |k| d_right[k] - d_left[k]);
-        Value {
+        let width = Value {
             value: right - left,
             stderr: known.stderr_of(&gradient),
-        }
+        };
+        told(width, PI, factor)
     });
+    let stderr = f * known.stderr_of(&at_top);
     Some(Peak {
         theta_s: top,
-        f: Value {
-            value: f,
-            stderr: f * known.stderr_of(&at_top),
-        },
+        // As high as with all the light.
+        f: told(Value { value: f, stderr }, f * product.recip().max(1.0), factor),
         width,
     })
 }

@@ -10,7 +10,7 @@ use super::derived::{self, Derived};
 use super::deviations::{self, Verdict};
 use super::hints::{self, Hint};
 use super::proof::{Goal, Proof, of_outcome};
-use super::{misfit, unseen};
+use super::{misfit, range, unseen};
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
@@ -161,7 +161,7 @@ impl FittedScan {
     }
 }
 
-/// What the engine found of the samples of a measurement, less outliers: without lobes that none of them sees, and with errors that account for the correlation of the residuals, or are those of the file's standard deviations; what became of these.
+/// What the engine found of the samples of a measurement, less outliers: without lobes that none of them sees, and with errors that account for the correlation of the residuals, or are those of the file's standard deviations, and say no more than bounds and energy allow; what became of these.
 pub fn known(
     measurement: &Measurement,
     samples: &[Sample<f64>],
@@ -180,7 +180,7 @@ pub fn known(
             judged.0
         }
     };
-    (outcome, verdict)
+    (range::settled(samples, options, outcome), verdict)
 }
 
 /// Fits one scan with what is wanted.

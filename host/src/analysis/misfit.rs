@@ -20,10 +20,14 @@ use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
 use along::Along;
-use process::Node;
+use process::{Node, Process, Residuals};
 
-/// ln of the likelihood must be so much above that of independence, which 4 % of scans with independent errors reach; below it errors are theirs.
-const EVIDENCE: f64 = 2.0;
+/// ln of the likelihood must be so much above that of independence, which one in six scans with independent errors reaches; below it errors are theirs.
+///
+/// The mean over all processes counts independence too, so that the errors of such scans hardly grow; with more evidence asked for, a wander that white noise hides would be passed over.
+const EVIDENCE: f64 = 0.5;
+/// Where one process stands for all it must be surer: 4 % of scans with independent errors reach this.
+const SURE: f64 = 2.0;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
 pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
@@ -46,6 +50,13 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 
 /// `None` where independence is not refuted, or nothing can be said.
 fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<Uncertainty> {
+    let (all, seen) = of_fit(samples, view, known)?;
+    let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
+    Some(with(samples, view, known, &seen, &nodes))
+}
+
+/// The residuals with the rows of J along the axes of the parameters inside their bounds that can be told from rounding, and the places of these; `None` if there are none, or nothing can be said.
+fn of_fit(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<(Residuals, Vec<usize>)> {
     let inside: Vec<usize> = known.inside().collect();
     if known.degrees_of_freedom < 4 || unseen::is_exact(known) || inside.is_empty() {
         return None;
@@ -62,9 +73,27 @@ fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Optio
         return None;
     }
     all.keep(&seen);
-    let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
-    let seen: Vec<usize> = (0..inside.len()).filter(|&k| seen[k]).map(|k| inside[k]).collect();
-    Some(with(samples, view, known, &seen, &nodes))
+    let places = inside.into_iter().zip(seen).filter(|(_, seen)| *seen);
+    Some((all, places.map(|(place, _)| place).collect()))
+}
+
+/// The costs of several fits of the same samples by the correlation that the residuals of the best of them have, and that; `None` where independence is not refuted, or nothing can be said of a fit.
+///
+/// Correlated residuals are as many independent ones after a linear map, by which each fit is taken to the optimum that it has there, linear in its parameters: so wandering residuals do not speak for a lobe as that many independent ones would.
+/// The correlation is that of one fit for all, as a poor model's own would take its misfit for noise.
+pub fn costs(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<(Process, Vec<f64>)> {
+    let finite = fits.iter().filter(|fit| fit.uncertainty.scale.is_finite());
+    let best = finite.min_by(|a, b| a.uncertainty.scale.total_cmp(&b.uncertainty.scale))?;
+    let (all, _) = of_fit(samples, &best.view(), &best.uncertainty)?;
+    let process = process::likeliest(&all, best.uncertainty.degrees_of_freedom, SURE)?;
+    let cost = |fit: &&Outcome| {
+        let known = &fit.uncertainty;
+        let (all, _) = of_fit(samples, &fit.view(), known)?;
+        let rest = process::likelihood(&all, process, 1.0).1;
+        Some(rest * known.scale * known.scale + fit.prior_cost)
+    };
+    let costs: Option<Vec<f64>> = fits.iter().map(cost).collect();
+    Some((process, costs?))
 }
 
 /// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.

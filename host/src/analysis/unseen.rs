@@ -42,7 +42,7 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
 }
 
 /// Takes a parameter out of all that is known.
-fn forget(known: &mut Uncertainty, place: usize) {
+pub(super) fn forget(known: &mut Uncertainty, place: usize) {
     known.places[place] = Some(Place::Unseen);
     known.push[place] = 0.0;
     let mut axes = known.axes.clone();

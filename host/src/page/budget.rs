@@ -96,7 +96,7 @@ fn runs(found: &Found) -> Markup {
 
 /// What each run gives.
 fn values(found: &Found) -> Markup {
-    let with_error = |value: Value| minus(&shown(value).replace("+-", "±"));
+    let with_error = |value: Value| minus(&shown(value, false).replace("+-", "±"));
     html! {
         table {
             caption { "What each run gives, with the standard error from within the run." }

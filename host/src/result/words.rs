@@ -3,6 +3,7 @@
 use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
 use crate::analysis::deviations::Verdict;
+use crate::analysis::misfit::process::Process;
 use crate::analysis::proof::Proof;
 use crate::analysis::undetermined::Undetermined;
 use crate::engine::uncertainty::Misfit;
@@ -69,7 +70,17 @@ pub fn correlated(misfit: &Misfit) -> String {
         (least, most) => format!("{least} to {most}"),
     };
     let over = two(misfit.length.to_degrees());
-    format!("residuals are correlated over {over} deg: errors are {times} times those of independent ones")
+    // One in six scans with independent errors has so small a part.
+    let are = if misfit.part < 0.25 { "may be" } else { "are" };
+    format!("residuals {are} correlated over {over} deg: errors are {times} times those of independent ones")
+}
+
+/// By what correlation the candidates of a choice are judged.
+pub fn judged(process: &Process) -> String {
+    format!(
+        "residuals are correlated over {} deg, and the criteria count them so",
+        two(process.length.to_degrees())
+    )
 }
 
 fn factor(factor: f64) -> String {
@@ -134,10 +145,17 @@ pub fn candidate(choice: &Choice, one: &Candidate) -> String {
     }
 }
 
-/// A value with its standard error, as "0.5123 +- 0.0021"; without one that is not known.
-pub fn shown(value: Value) -> String {
+/// What is said of a value whose 95 % interval is the whole range that it can have.
+pub const NOT_DETERMINED: &str = "not determined";
+
+/// A value with its standard error, as "0.5123 +- 0.0021"; of an exact fit, which has no errors, the value.
+pub fn shown(value: Value, exact: bool) -> String {
     if !value.stderr.is_finite() {
-        return four(value.value);
+        return if exact {
+            four(value.value)
+        } else {
+            NOT_DETERMINED.into()
+        };
     }
     format!("{} +- {}", four(value.value), two(value.stderr))
 }

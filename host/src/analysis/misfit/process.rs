@@ -76,8 +76,6 @@ const PARTS: [f64; 9] = [0.1, 0.25, 0.45, 0.65, 0.8, 0.9, 0.96, 0.99, 0.999];
 const FIRST: [f64; 3] = [0.25, 0.65, 0.96];
 /// Before the scan is seen a length x times another is likelier by x to this power: short scans tell less of long ones than there is.
 const LONGER: f64 = 0.25;
-/// And smooth processes are less likely, by this in the logarithm; without noise the two can be mistaken for each other.
-const RARE: f64 = 1.5;
 /// A correlation between lines below this is none.
 const LEAST_COMMON: f64 = 0.1;
 /// No process is longer than this part of a line: beyond, it is a factor of all values, of which residuals say nothing.
@@ -87,9 +85,18 @@ const MANY: usize = 4096;
 /// (1 + x) exp(-x) is 1/e here.
 const SMOOTH: f64 = 2.146_193_220_620_582_6;
 
-/// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`.
-pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
-    let lengths = lengths(all)?;
+/// A process with ln of its likelihood and the variance that fits best.
+type Judged = (Process, (f64, f64));
+
+/// The likeliest process; `None` if none is more likely than independence by a factor of e^`evidence`.
+pub fn likeliest(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Option<Process> {
+    let list = judged(all, &lengths(all)?, degrees_of_freedom, evidence)?;
+    let best = list.iter().max_by(|(_, (a, _)), (_, (b, _))| a.total_cmp(b))?;
+    Some(best.0)
+}
+
+/// All processes of these lengths, and independence at their end; `None` if none of a few is more likely than that by a factor of e^`evidence`.
+fn judged(all: &Residuals, lengths: &[f64], degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Judged>> {
     let degrees = degrees_of_freedom as f64;
     let independent = Process {
         length: f64::MIN_POSITIVE,
@@ -102,14 +109,14 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
         let both = pairs.flat_map(|(length, part)| [false, true].map(|smooth| Process { length, part, smooth }));
         both.collect()
     };
-    let judged = |process: Process| (process, likelihood(all, process, degrees));
-    let judged_all = |processes: Vec<Process>| -> Vec<_> {
+    let one = |process: Process| (process, likelihood(all, process, degrees));
+    let judged_all = |processes: Vec<Process>| -> Vec<Judged> {
         match all.values.len() < MANY {
-            true => processes.into_iter().map(judged).collect(),
-            false => processes.into_par_iter().map(judged).collect(),
+            true => processes.into_iter().map(one).collect(),
+            false => processes.into_par_iter().map(one).collect(),
         }
     };
-    let null = judged(independent);
+    let null = one(independent);
     let first = judged_all(processes(2, &FIRST));
     let most = first.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
     if !(most > null.1.0 + evidence) {
@@ -117,13 +124,20 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     }
     let mut list = judged_all(processes(1, &PARTS));
     list.push(null);
+    Some(list)
+}
+
+/// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`.
+pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
+    let lengths = lengths(all)?;
+    let list = judged(all, &lengths, degrees_of_freedom, evidence)?;
     // Independence counts as much as all else together.
     let others = Real::portable_ln(list.len() as f64 - 1.0);
     let best = list.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
-    let share = |(process, (ln, _)): &(Process, (f64, f64))| {
+    let share = |(process, (ln, _)): &Judged| {
         let more = match process.part {
             0.0 => others,
-            _ => LONGER * Real::portable_ln(process.length / lengths[0]) - if process.smooth { RARE } else { 0.0 },
+            _ => LONGER * Real::portable_ln(process.length / lengths[0]),
         };
         Real::portable_exp(ln - best + more)
     };
@@ -131,7 +145,7 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
     let common = Common::new(all);
     let total: f64 = kept.iter().map(|one| share(one)).sum();
-    let node = |one: &&(Process, (f64, f64))| Node {
+    let node = |one: &&Judged| Node {
         process: one.0,
         weight: share(one) / total,
         variance: one.1.1,

@@ -11,6 +11,8 @@ use crate::terms::term_names;
 #[derive(Serialize)]
 pub struct Selection {
     criterion: &'static str,
+    /// The angle over which residuals are correlated, by which all are judged; null where they are not.
+    correlated_over_deg: Option<f64>,
     sentence: String,
     candidates: Vec<JsonCandidate>,
 }
@@ -44,6 +46,7 @@ pub fn selection(choice: &Choice) -> Selection {
     };
     Selection {
         criterion: "bic",
+        correlated_over_deg: choice.process.map(|process| process.length.to_degrees()),
         sentence: words::choice(choice),
         candidates: choice.candidates.iter().map(candidate).collect(),
     }

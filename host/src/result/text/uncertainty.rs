@@ -9,7 +9,7 @@ use crate::analysis::unseen;
 use crate::engine::Outcome;
 use crate::engine::uncertainty::Uncertainty;
 use crate::number::{percent, six, two};
-use crate::result::words::{self, EXACT, correlated, sentence, shown};
+use crate::result::words::{self, EXACT, NOT_DETERMINED, correlated, sentence};
 
 /// Correlations from this on are listed.
 const STRONG: f64 = 0.9;
@@ -20,6 +20,9 @@ const LISTED: usize = 12;
 pub fn remark(index: usize, known: &Uncertainty) -> String {
     match known.places[index] {
         Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", two(known.stderr[index])),
+        Some(Place::Inside) if !unseen::is_exact(known) && known.degrees_of_freedom > 0 => {
+            format!("  {NOT_DETERMINED}")
+        }
         Some(Place::Inside) | None => String::new(),
         Some(Place::Lower | Place::Upper) => "  at its bound".into(),
         Some(Place::Fixed) => "  fixed".into(),
@@ -92,12 +95,13 @@ pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<Stri
     if !strong.is_empty() {
         lines.push(format!("    correlated: {}", strong.join(", ")));
     }
-    lines.extend(table(derived));
+    lines.extend(table(derived, unseen::is_exact(known)));
     lines
 }
 
-/// One row an angle of incidence.
-fn table(derived: &[Derived]) -> Vec<String> {
+/// One row an angle of incidence; of an exact fit without errors.
+fn table(derived: &[Derived], exact: bool) -> Vec<String> {
+    let shown = |value: Value| words::shown(value, exact);
     let row = |cells: [String; 6]| {
         let [theta_i, rho_s_f, rho_v_f, peak, width, reflectance] = cells;
         format!("    {theta_i:>7}  {rho_s_f:<19}  {rho_v_f:<19}  {peak:<28}  {width:<15}  {reflectance}")

@@ -1,0 +1,94 @@
+//! What is known no better than to the whole range that it can have is not determined.
+//!
+//! The range of a parameter is that of its bounds; that of a reflectance is 0 to 1, as no surface reflects more than it receives.
+
+use brdfit_core::geometry::Sample;
+use brdfit_core::uncertainty::Place;
+
+use super::derived::Value;
+use super::misfit::coverage_factor;
+use super::reflectance::reflectance;
+use super::unseen::forget;
+use crate::engine::uncertainty::NEAR_ZERO;
+use crate::engine::{FitOptions, Outcome, Values};
+
+/// A value whose 95 % interval, of `factor` standard errors to each side, is wider than `range` to each side has none: its standard error is infinite.
+pub fn told(value: Value, range: f64, factor: f64) -> Value {
+    match factor * value.stderr < range {
+        true => value,
+        false => Value {
+            stderr: f64::INFINITY,
+            ..value
+        },
+    }
+}
+
+/// The fit with errors that say no more than bounds and energy allow.
+///
+/// A parameter on a bound lies no farther inside than the other bound.
+/// A weight on its lower bound that may, within its 95 % interval, reflect more than arrives is not limited by the scan: it is [`Place::Unseen`], and stays out of the errors of all else.
+/// The standard error of a parameter whose 95 % interval is all that its bounds allow is infinite.
+pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outcome) -> Outcome {
+    let model = outcome.model;
+    let count = model.parameters.len();
+    let factor = coverage_factor(&outcome.uncertainty);
+    if !factor.is_finite() {
+        return outcome;
+    }
+    let mut axes = outcome.uncertainty.axes.clone();
+    let mut capped = false;
+    for place in 0..count {
+        if !matches!(outcome.uncertainty.places[place], Some(Place::Lower | Place::Upper)) {
+            continue;
+        }
+        let (lower, upper) = (options.lower[place], options.upper[place]);
+        // Displacements from kappa = 0 are of kappa^2, told at NEAR_ZERO.
+        let most = match model.parameters[place].name == "kappa" && outcome.params[place] == 0.0 {
+            true => 0.5 * upper * upper / NEAR_ZERO,
+            false => upper - lower,
+        };
+        let size = axes[place][place].abs();
+        if size > most {
+            axes[place] = axes[place].iter().map(|part| part * (most / size)).collect();
+            capped = true;
+        }
+    }
+    if capped {
+        outcome.uncertainty = outcome.uncertainty.clone().with_axes(axes);
+    }
+    for place in 0..count {
+        let parameter = &model.parameters[place];
+        let lobe = parameter.is_weight() && parameter.name != "rho_d";
+        let inside = outcome.uncertainty.axes[place][place].abs();
+        if lobe
+            && outcome.uncertainty.places[place] == Some(Place::Lower)
+            && makes_energy(samples, &outcome, place, factor * inside)
+        {
+            outcome.at_bound.retain(|&name| name != parameter.name);
+            forget(&mut outcome.uncertainty, place);
+        }
+    }
+    let known = &mut outcome.uncertainty;
+    known.stderr = Values::from_fn(count, |place| {
+        let error = known.stderr[place];
+        let range = options.upper[place] - options.lower[place];
+        match known.places[place] == Some(Place::Inside) && factor * error >= range {
+            true => f64::INFINITY,
+            false => error,
+        }
+    });
+    outcome
+}
+
+/// Would a weight that is larger by this reflect more than arrives, at the least or the largest angle of incidence?
+fn makes_energy(samples: &[Sample<f64>], outcome: &Outcome, place: usize, more: f64) -> bool {
+    /// A lobe of weight 1 reflects less than this.
+    const MOST: f64 = 100.0;
+    if !(more * MOST > 1.0) {
+        return false;
+    }
+    let angles = || samples.iter().map(|sample| sample.theta_i);
+    let ends = [angles().fold(f64::INFINITY, f64::min), angles().fold(0.0, f64::max)];
+    let slope = |theta_i: f64| reflectance(&outcome.material(), theta_i).1[place];
+    ends.iter().any(|&theta_i| more * slope(theta_i) > 1.0)
+}

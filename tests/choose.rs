@@ -88,7 +88,7 @@ fn wandering(truth: &Material, copy: u64) -> Vec<Sample<f64>> {
 fn residuals_that_wander_buy_no_terms() {
     let copies = 24;
     for (params, terms, more) in [
-        ([0.2, 0.0, 0.0, 0.2, 1.5, 0.0], DIFFUSE, DIFFUSE | SURFACE),
+        ([0.2, 0.0, 0.0, 0.2, 1.5, 0.0], DIFFUSE, Some(DIFFUSE | SURFACE)),
         (
             [0.05, 1.0, 0.0, 0.2, 1.5, 0.0],
             DIFFUSE | SURFACE,

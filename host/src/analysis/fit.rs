@@ -169,11 +169,11 @@ pub fn known(
     outcome: Outcome,
 ) -> (Outcome, Option<Verdict>) {
     let mut outcome = unseen::settled(samples, options, outcome);
-    let corrected = misfit::uncertainty(samples, &outcome);
     let mut verdict = None;
     outcome.uncertainty = match measurement.sigma_ln {
-        None => corrected,
+        None => misfit::uncertainty(samples, &outcome),
         Some(sigma) => {
+            let corrected = misfit::surely(samples, &outcome);
             let absolute = measurement.on_deviations.absolute;
             let judged = deviations::judged(&corrected, &outcome.uncertainty, sigma, absolute);
             verdict = judged.1;

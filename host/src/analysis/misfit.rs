@@ -26,13 +26,22 @@ use process::{Node, Process, Residuals};
 ///
 /// The mean over all processes counts independence too, so that the errors of such scans hardly grow; with more evidence asked for, a wander that white noise hides would be passed over.
 const EVIDENCE: f64 = 0.5;
-/// Where one process stands for all it must be surer: 4 % of scans with independent errors reach this.
+/// It must be surer where one process stands for all, or speaks against a file's standard deviations: 4 % of scans with independent errors reach this.
 const SURE: f64 = 2.0;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
 pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
+    with_evidence(samples, outcome, EVIDENCE)
+}
+
+/// The same, but of residuals whose correlation is sure: what is only likely does not speak against standard deviations that a file gives.
+pub fn surely(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
+    with_evidence(samples, outcome, SURE)
+}
+
+fn with_evidence(samples: &[Sample<f64>], outcome: &Outcome, evidence: f64) -> Uncertainty {
     let known = &outcome.uncertainty;
-    corrected(samples, &outcome.view(), known).unwrap_or_else(|| unseen::doubted(known))
+    corrected(samples, &outcome.view(), known, evidence).unwrap_or_else(|| unseen::doubted(known))
 }
 
 /// So many standard errors are the half of a 95 % interval: Student's t of the effective degrees of freedom; infinite without any.
@@ -49,9 +58,9 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 }
 
 /// `None` where independence is not refuted, or nothing can be said.
-fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<Uncertainty> {
+fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty, evidence: f64) -> Option<Uncertainty> {
     let (all, seen) = of_fit(samples, view, known)?;
-    let nodes = process::nodes(&all, known.degrees_of_freedom, EVIDENCE)?;
+    let nodes = process::nodes(&all, known.degrees_of_freedom, evidence)?;
     Some(with(samples, view, known, &seen, &nodes))
 }
 

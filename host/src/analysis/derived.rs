@@ -7,7 +7,6 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::misfit::coverage_factor;
-use super::range::told;
 use super::reflectance::reflectance;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values};
@@ -56,6 +55,17 @@ impl Derived {
     /// Does no more light leave than arrives?
     pub fn conserves_energy(&self) -> bool {
         self.reflectance.value <= 1.0
+    }
+}
+
+/// A value whose 95 % interval, of `factor` standard errors to each side, is wider than `range` to each side has none: its standard error is infinite.
+fn told(value: Value, range: f64, factor: f64) -> Value {
+    match factor * value.stderr < range {
+        true => value,
+        false => Value {
+            stderr: f64::INFINITY,
+            ..value
+        },
     }
 }
 

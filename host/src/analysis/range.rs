@@ -1,27 +1,15 @@
 //! What is known no better than to the whole range that it can have is not determined.
 //!
-//! The range of a parameter is that of its bounds; that of a reflectance is 0 to 1, as no surface reflects more than it receives.
+//! The range of a parameter is that of its bounds, and that of a weight ends where it reflects more than arrives; what is derived has its range in [`super::derived`].
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::uncertainty::Place;
 
-use super::derived::Value;
 use super::misfit::coverage_factor;
 use super::reflectance::reflectance;
 use super::unseen::forget;
 use crate::engine::uncertainty::NEAR_ZERO;
 use crate::engine::{FitOptions, Outcome, Values};
-
-/// A value whose 95 % interval, of `factor` standard errors to each side, is wider than `range` to each side has none: its standard error is infinite.
-pub fn told(value: Value, range: f64, factor: f64) -> Value {
-    match factor * value.stderr < range {
-        true => value,
-        false => Value {
-            stderr: f64::INFINITY,
-            ..value
-        },
-    }
-}
 
 /// The fit with errors that say no more than bounds and energy allow.
 ///

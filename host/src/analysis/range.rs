@@ -8,6 +8,7 @@ use brdfit_core::uncertainty::Place;
 use super::misfit::coverage_factor;
 use super::reflectance::reflectance;
 use super::unseen::forget;
+use crate::engine::scale::Scale;
 use crate::engine::uncertainty::NEAR_ZERO;
 use crate::engine::{FitOptions, Outcome, Values};
 
@@ -23,13 +24,17 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
     if !factor.is_finite() {
         return outcome;
     }
+    let scale = Scale::of(&[samples], options);
+    let (lower, upper) = bounds(scale, options);
+    // What is of another unit may be larger than 1.
+    let in_sr = !scale.is_some_and(Scale::is_of_another_unit);
     let mut axes = outcome.uncertainty.axes.clone();
     let mut capped = false;
     for place in 0..count {
         if !matches!(outcome.uncertainty.places[place], Some(Place::Lower | Place::Upper)) {
             continue;
         }
-        let (lower, upper) = (options.lower[place], options.upper[place]);
+        let (lower, upper) = (lower[place], upper[place]);
         // Displacements from kappa = 0 are of kappa^2, told at NEAR_ZERO.
         let most = match model.parameters[place].name == "kappa" && outcome.params[place] == 0.0 {
             true => 0.5 * upper * upper / NEAR_ZERO,
@@ -49,6 +54,7 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
         let lobe = parameter.is_weight() && parameter.name != "rho_d";
         let inside = outcome.uncertainty.axes[place][place].abs();
         if lobe
+            && in_sr
             && outcome.uncertainty.places[place] == Some(Place::Lower)
             && makes_energy(samples, &outcome, place, factor * inside)
         {
@@ -59,13 +65,22 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
     let known = &mut outcome.uncertainty;
     known.stderr = Values::from_fn(count, |place| {
         let error = known.stderr[place];
-        let range = options.upper[place] - options.lower[place];
+        let range = upper[place] - lower[place];
         match known.places[place] == Some(Place::Inside) && factor * error >= range {
             true => f64::INFINITY,
             false => error,
         }
     });
     outcome
+}
+
+/// The bounds in the unit of the scan.
+fn bounds(scale: Option<Scale>, options: &FitOptions) -> (Values, Values) {
+    let inside = scale.and_then(|scale| Some((scale, scale.options(options).ok()?)));
+    inside.map_or((options.lower, options.upper), |(scale, inside)| {
+        let given = |values: &Values| scale.given(options.model.parameters, values);
+        (given(&inside.lower), given(&inside.upper))
+    })
 }
 
 /// Would a weight that is larger by this reflect more than arrives, at the least or the largest angle of incidence?

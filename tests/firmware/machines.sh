@@ -14,6 +14,13 @@ need() {
     command -v "$1" >/dev/null || fail "$1 is missing: install $2"
 }
 
+# Sets `cpu` to the seconds of processor time that all ended commands took so far; other jobs on the machine hardly change them.
+count_cpu() {
+    mkdir -p target
+    times >target/times
+    cpu=$(awk -F'[ms ]+' 'NR == 2 { printf "%.0f", 60 * ($1 + $3) + $2 + $4 }' target/times)
+}
+
 # LLVM's linker, which has its version in its name.
 newest() {
     local found

@@ -118,20 +118,22 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
     }
 }
 
-/// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within 1 % of cost, and 5 % of each coordinate.
+/// See [`joins`].
+const JOINS: f64 = 0.01;
+
+/// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within 1 % of cost, and where the residuals, linear as the fit sees them, change by no more than 1 % of the cost on the way: along a valley that is far.
 pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<R, P>) -> bool {
-    close(cost, fit.at.cost, R::of(0.01)) && all_close(x, &fit.x, R::of(0.05), R::of(1e-3))
+    let mut change = R::ZERO;
+    for i in 0..P {
+        for j in 0..P {
+            change += (x[i] - fit.x[i]) * (x[j] - fit.x[j]) * fit.at.hessian[i][j];
+        }
+    }
+    close(cost, fit.at.cost, R::of(JOINS)) && change < R::of(JOINS) * cost
 }
 
 fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
-    close(a.cost, b.cost, R::of(0.01)) || all_close(&a.x, &b.x, R::of(1e-3), R::ZERO)
-}
-
-/// Are all numbers close, or less than `least` apart?
-#[cfg_attr(target_os = "none", inline(never))]
-fn all_close<R: Real>(x: &[R], y: &[R], part: R, least: R) -> bool {
-    let near = |(&x, &y): (&R, &R)| close(x, y, part) || (x - y).abs() < least;
-    x.iter().zip(y).all(near)
+    close(a.cost, b.cost, R::of(0.01)) || a.x.iter().zip(&b.x).all(|(&x, &y)| close(x, y, R::of(1e-3)))
 }
 
 /// Moves an item of a list to its end; the others stay in order.

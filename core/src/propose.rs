@@ -150,7 +150,7 @@ fn like<'a, R, const P: usize>(region: Region<'a, R, P>) -> Option<&'a [R; P]> {
 /// The place within the whole range from that within the band; only the first slope is kept to it.
 fn in_band<R: Real, const P: usize>(u: R, region: Region<R, P>, slopes: usize) -> R {
     match region {
-        Region::Band(band) if slopes == 0 => (R::from(band as u16) + u) / R::from(BANDS as u16),
+        Region::Band(band) | Region::Corner(band) if slopes == 0 => (R::from(band as u16) + u) / R::from(BANDS as u16),
         _ => u,
     }
 }
@@ -219,6 +219,7 @@ fn index<R: Real, const P: usize>(
             fades = (listed_n, listed_kappa) == (R::of(FADING.0), R::of(FADING.1));
         }
         (Region::Slopes(_), _) if i % 4 == 1 => fades = true,
+        (Region::Corner(_), _) => fades = true,
         _ if regime < steps[0] => (n, kappa2) = (Some(n_alone), Some(R::ZERO)),
         _ if regime < steps[1] => (n, kappa2) = (Some(R::ONE), Some(kappa_alone * kappa_alone)),
         _ if regime < steps[2] => fades = true,

@@ -1,9 +1,9 @@
 //! The search for the global optimum: the paper's, and a faster one.
 //!
 //! # The default method
-//! 1. A round proposes candidates (`candidate.rs`), each with the weights that fit best. The most promising are levelled, which gives their cost; the best of those are fitted for a few passes; the best of these converges, and with it each that is near the best cost known, unless it comes so near to an end already found that it would end there.
-//! 2. After five rounds most scans are settled: the best end was reached more than once, and no fit with other slopes is anywhere near it. Where that is not so, further rounds look at one part of the range of slopes after the other.
-//! 3. Then come variations of the best: the same slopes, other kinds of index. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart. Where other slopes are near, slopes that pairs of samples tell are tried as well.
+//! 1. A round proposes candidates (`candidate.rs`), each with the weights that fit best. The most promising are levelled, which gives their cost; the best of those are fitted for a few passes; the best of these converges, and with it the first that has other slopes than the best end, and each that is near the best cost known, unless it comes so near to an end already found that it would end there.
+//! 2. After four or five rounds most scans are settled: the best end was reached more than once, with the same slopes, and no fit with other slopes is anywhere near it. Where that is not so, further rounds look at one part of the range of slopes after the other.
+//! 3. Then come variations of the best: the same slopes, other kinds of index. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart. Where other slopes are near, slopes that pairs of samples tell are tried as well; and where the best is then on an upper bound, weights near their bounds, with one part of the range of slopes after the other.
 //! 4. The best is brought to the caller's tolerance; until then 1e-8 is enough.
 //!
 //! It is made in steps of at most one pass each ([`Search::step`]), with its state in memory of the caller; [`search`] takes them all.
@@ -61,6 +61,8 @@ pub enum Region<'a, R, const P: usize> {
     Everywhere,
     /// Slopes in one of [`BANDS`] parts of their range.
     Band(u32),
+    /// The same where weights near their bounds go with an index of refraction at which the model all but vanishes ([`crate::model::Model::fade`]).
+    Corner(u32),
     /// The slopes of a point, with another index: what decides between the minima near it.
     Index(&'a [R; P]),
     /// Slopes that samples near a peak tell, half of them with the index of a point.

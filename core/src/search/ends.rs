@@ -17,7 +17,9 @@ const RIVAL_END: (f64, f64) = (1.1, 2.0);
 /// The same for a fit of a few passes.
 const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
 /// A scan without noise: the best cost is below this part of that of a poor candidate. Then the cost does not tell what is near, and nothing settles it.
-const EXACT: f64 = 1e-9;
+pub(super) const EXACT: f64 = 1e-9;
+/// The same of a scan with little noise: a variation of the best can begin far above it.
+pub(super) const QUIET: f64 = 1e-4;
 /// Ends that are remembered.
 const ENDS: usize = 16;
 /// Two ends of the same cost, to this part, are one.
@@ -76,11 +78,17 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         self.list.first().is_none_or(|best| cost < best.cost * factor)
     }
 
-    /// Is there no noise in the scan?
+    /// Is the best cost below this part, [`EXACT`] or [`QUIET`], of that of a poor candidate?
     #[cfg_attr(target_os = "none", inline(never))]
-    pub fn is_exact(&self) -> bool {
+    pub fn is_below(&self, part: f64) -> bool {
         let best = self.list.first();
-        best.is_some_and(|best| best.cost < self.poorest * R::of(EXACT))
+        best.is_some_and(|best| best.cost < self.poorest * R::of(part))
+    }
+
+    /// Has a fit other slopes than the best end?
+    pub fn is_elsewhere(&self, scene: &(impl Scene<R, P> + ?Sized), x: &[R; P]) -> bool {
+        let best = self.list.first();
+        best.is_some_and(|best| scene.apart(x, &best.x, R::of(RIVAL_FIT.0)))
     }
 
     /// In how many rounds a fit has ended in the best.
@@ -90,20 +98,16 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
 
     /// Remembers a short fit with other slopes than the best.
     pub fn note_rival(&mut self, scene: &(impl Scene<R, P> + ?Sized), fit: &Fit<R, P>) {
-        let Some(best) = self.list.first() else { return };
-        let is_rival = |x: &[R; P]| scene.apart(x, &best.x, R::of(RIVAL_FIT.0));
-        let old = self.rival.filter(|(x, _)| is_rival(x));
-        if is_rival(&fit.x) && old.is_none_or(|(_, cost)| fit.at.cost < cost) {
+        let old = self.rival.filter(|(x, _)| self.is_elsewhere(scene, x));
+        if self.is_elsewhere(scene, &fit.x) && old.is_none_or(|(_, cost)| fit.at.cost < cost) {
             self.rival = Some((fit.x, fit.at.cost));
         }
     }
 
     /// Came a short fit with other slopes near the best?
     pub fn has_rival_fit(&self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
-        let (Some(best), Some((x, cost))) = (self.list.first(), &self.rival) else {
-            return false;
-        };
-        self.is_near(*cost, R::of(RIVAL_FIT.1)) && scene.apart(x, &best.x, R::of(RIVAL_FIT.0))
+        let rival = self.rival.as_ref();
+        rival.is_some_and(|(x, cost)| self.is_near(*cost, R::of(RIVAL_FIT.1)) && self.is_elsewhere(scene, x))
     }
 
     /// Is an end with other slopes near the best?
@@ -115,9 +119,16 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         near.any(|end| scene.apart(&end.x, &best.x, R::of(RIVAL_END.0)))
     }
 
-    /// Does a fit of candidate `start` need no further pass? It has converged, or it is plain that it joins an end already found, or leads nowhere; where it ends is noted.
+    /// Does a fit of candidate `start` need no further pass? It has converged, or it is plain that it joins an end already found, or leads nowhere; where it ends is noted, and whether fits end in the best with other slopes.
     #[cfg_attr(target_os = "none", inline(never))]
-    pub fn is_over(&mut self, fit: &Fit<R, P>, start: u64, round: u32) -> bool {
+    pub fn is_over(
+        &mut self,
+        scene: &(impl Scene<R, P> + ?Sized),
+        fit: &Fit<R, P>,
+        start: u64,
+        round: u32,
+        flat: &mut bool,
+    ) -> bool {
         let converged = fit.stop.is_some();
         let place = self.list.iter().position(|end| {
             if converged {
@@ -127,6 +138,11 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
             }
         });
         if place.is_some() || converged {
+            if let Some(best) = self.list.first() {
+                let same = place == Some(0);
+                *flat |= same && converged && scene.apart(&fit.x, &best.x, R::of(RIVAL_END.0));
+                *flat &= place.is_some() || !(fit.at.cost < best.cost);
+            }
             self.end(fit, place, round);
             self.minima.add(fit, start);
             return true;

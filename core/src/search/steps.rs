@@ -55,7 +55,7 @@ pub struct Progress {
     pub phase: Phase,
     /// Rounds that were begun.
     pub rounds: u32,
-    /// Candidates of these rounds; of most scans 75 are made, of those that are hard to settle all.
+    /// Candidates of these rounds; of most scans 60 or 75 are made, of those that are hard to settle all.
     pub candidates: u32,
     /// Passes so far.
     pub evaluations: Evaluations,
@@ -89,6 +89,7 @@ enum Task {
 enum Kind {
     Everywhere,
     Band(u32),
+    Corner(u32),
     Index,
     Slopes,
 }
@@ -135,6 +136,10 @@ pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = F
     task: Task,
     /// Are further rounds and variations needed to settle the scan?
     unsettled: bool,
+    /// Have fits ended in the best end with other slopes? Then the scan does not tell these there, but may tell them beside, where a second sample sees the lobe.
+    flat: bool,
+    /// Had a fit of this round other slopes than the best end?
+    elsewhere: bool,
     kind: Kind,
     /// How many candidates are asked for, and how many rounds and candidates of these were begun.
     candidates: u32,
@@ -181,6 +186,8 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             task: Task::Choose,
             kind: Kind::Everywhere,
             unsettled: false,
+            flat: false,
+            elsewhere: false,
             seed: 0,
             candidates: 0,
             round: 0,
@@ -223,6 +230,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         (self.phase, self.task, self.kind) = (Phase::Known, Task::Choose, Kind::Everywhere);
         (self.seed, self.candidates) = (seed, candidates.max(1));
         self.unsettled = self.makes_all();
+        self.flat = false;
         (self.round, self.made, self.known) = (0, 0, 0);
         self.evaluations = Evaluations::default();
         (self.bounds, self.options) = (*bounds, *options);

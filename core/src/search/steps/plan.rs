@@ -1,14 +1,16 @@
 //! Which rounds a search makes, and when it has made enough.
 
 use super::{Kind, Phase, Search, Task};
+use crate::lm::Bounds;
 use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
+use crate::search::ends::EXACT;
 use crate::search::{BANDS, Scene};
 
 /// The default method makes at most this many candidates, if nothing else is asked for.
 pub const CANDIDATES: u32 = (ROUNDS + CYCLES * BANDS) * ROUND;
 
-/// Rounds that are made in any case.
+/// First rounds; a scan can be settled one before their end.
 const ROUNDS: u32 = 5;
 /// After so many parts of the range of slopes a scan can be settled.
 const FIRST_BANDS: u32 = 3;
@@ -18,12 +20,14 @@ const CYCLES: u32 = 3;
 const ROUND: u32 = 15;
 /// Variations are made again of a better end that they lead to, so often at most.
 const LOOPS: u32 = 3;
-/// Rounds that must have led to the best end: after the first rounds, and after the first parts of the range of slopes.
+/// Rounds that must have led to the best end: after the first rounds, and sooner or after the first parts of the range of slopes.
 const HITS: (u32, u32) = (2, 3);
 /// Candidates with the slopes of the best.
 const VARIATIONS: u32 = INDICES.len() as u32;
 /// Candidates with other slopes than the best.
 const SLOPES: u32 = 16;
+/// Rounds with weights near their bounds, where the best is on an upper bound.
+const CORNERS: u32 = 3 * BANDS;
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
     /// Begins the next round, or ends the rounds.
@@ -50,21 +54,33 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             return false;
         }
         let ends = &self.ends;
-        if self.round == ROUNDS {
-            let rivals = ends.has_rival_fit(scene) || ends.has_rival_end(scene);
-            self.unsettled = ends.best_hits() < HITS.0 || rivals || ends.is_exact();
+        let agreed =
+            |hits| ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(EXACT) && !self.flat;
+        if self.round + 1 == ROUNDS || self.round == ROUNDS {
+            let hits = if self.round == ROUNDS { HITS.0 } else { HITS.1 };
+            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene);
+            return !self.unsettled;
         }
-        if self.round == ROUNDS + FIRST_BANDS && self.unsettled {
-            return ends.best_hits() >= HITS.1 && !ends.has_rival_end(scene) && !ends.is_exact();
+        if self.round == ROUNDS + FIRST_BANDS {
+            return agreed(HITS.1);
         }
-        self.round >= ROUNDS && !self.unsettled
+        false
+    }
+
+    /// Is a parameter of the best end, which is not held, as large as it may be?
+    fn is_on_upper_bound(&self) -> bool {
+        let (x, Bounds { lower, upper }) = (&self.ends.best.x, &self.bounds);
+        (0..P).any(|k| lower[k] < upper[k] && x[k] >= upper[k])
     }
 
     /// The next round of variations of the best, and again of a better one that they lead to.
     fn vary(&mut self) {
         let groups = GROUPS.len() as u32;
-        let rounds = groups + u32::from(self.unsettled);
-        if self.group == rounds {
+        let mut rounds = groups;
+        if self.unsettled {
+            rounds += if self.is_on_upper_bound() { 1 + CORNERS } else { 1 };
+        }
+        if self.group >= rounds {
             let least = self.centre.1 * R::of(1.0 - 1e-6);
             self.again += 1;
             self.group = 0;
@@ -83,6 +99,9 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             let before = group.checked_sub(1).and_then(|before| GROUPS.get(before as usize));
             let first = self.again * VARIATIONS;
             self.begin_round(first + before.unwrap_or(&0), first + end, Kind::Index);
+        } else if let Some(corner) = group.checked_sub(groups + 1) {
+            let first = CANDIDATES + (self.again * CORNERS + corner) * ROUND;
+            self.begin_round(first, first + ROUND, Kind::Corner(corner * 5 % BANDS));
         } else {
             let first = self.again * SLOPES;
             self.begin_round(first, first + SLOPES, Kind::Slopes);

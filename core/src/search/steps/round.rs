@@ -4,7 +4,7 @@ use super::{BEGUN, GROUP_BEGUN, Kind, Phase, SHORT, SLOPES_BEGUN, Search, Task, 
 use crate::lm::Fit;
 use crate::minima::{self, Minimum};
 use crate::real::Real;
-use crate::search::ends::NEAR;
+use crate::search::ends::{NEAR, QUIET};
 use crate::search::{Candidate, Region, Scene, Waits};
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
@@ -15,6 +15,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         (self.next, self.end, self.kind) = (first, end, kind);
         self.starts.clear();
         self.fits.clear();
+        self.elsewhere = false;
         self.task = Task::Propose;
     }
 
@@ -23,6 +24,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         let region = match self.kind {
             Kind::Everywhere => Region::Everywhere,
             Kind::Band(band) => Region::Band(band),
+            Kind::Corner(band) => Region::Corner(band),
             Kind::Index => Region::Index(&self.centre.0),
             Kind::Slopes => Region::Slopes(&self.centre.0),
         };
@@ -162,7 +164,13 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         if self.phase != Phase::Known {
             self.ends.note_rival(scene, fit);
         }
-        if self.place == 0 && self.kind != Kind::Index || self.ends.is_near(fit.at.cost, R::of(NEAR)) {
+        let varies = self.kind == Kind::Index;
+        let first = self.place == 0 && (!varies || self.ends.is_below(QUIET));
+        // A basin where fits converge slowly would lose every round to one where they are fast.
+        let elsewhere = !varies && self.ends.is_elsewhere(scene, &fit.x);
+        let strays = elsewhere && !self.elsewhere;
+        self.elsewhere |= elsewhere;
+        if first || strays || self.ends.is_near(fit.at.cost, R::of(NEAR)) {
             (self.until, self.task) = (0, Task::Converge);
         } else {
             self.place += 1;
@@ -174,7 +182,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         let rough = self.rough();
         if let Some(Trial { fit, start }) = self.fits.get_mut(self.place as usize) {
             if fit.stop.is_some() || fit.passes >= self.until {
-                if self.ends.is_over(fit, *start, self.round) {
+                if self.ends.is_over(scene, fit, *start, self.round, &mut self.flat) {
                     self.place += 1;
                     self.task = Task::Judge;
                     return;

@@ -24,7 +24,10 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R
         tape.one_of(&mut self.phase, &phases);
         let tasks = [Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last];
         tape.one_of(&mut self.task, &tasks);
-        let bands: [Kind; BANDS as usize] = core::array::from_fn(|band| Kind::Band(band as u32));
+        let bands: [Kind; 2 * BANDS as usize] = core::array::from_fn(|k| match k as u32 {
+            band if band < BANDS => Kind::Band(band),
+            band => Kind::Corner(band - BANDS),
+        });
         let mut band = bands.contains(&self.kind);
         tape.flag(&mut band);
         if band {
@@ -33,6 +36,8 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R
             tape.one_of(&mut self.kind, &[Kind::Everywhere, Kind::Index, Kind::Slopes]);
         }
         tape.flag(&mut self.unsettled);
+        tape.flag(&mut self.flat);
+        tape.flag(&mut self.elsewhere);
         tape.u64(&mut self.seed);
         for number in [
             &mut self.candidates,

@@ -71,7 +71,7 @@ fn energy_is_conserved_at_the_least_cost() {
     };
     assert!((cost(&held.material()) / held.cost - 1.0).abs() < 1e-9);
     let mut noise = Noise::new(1, 1);
-    let mut tried = 0;
+    let mut cheaper = 0;
     for k in 0..4000 {
         let size = 10f64.powi(-1 - k % 4);
         let mut values = held.params;
@@ -82,12 +82,13 @@ fn energy_is_conserved_at_the_least_cost() {
             values,
             ..held.material()
         };
-        if values[0] <= 1.0 && values.iter().all(|value| *value >= 0.0) && most(&other) <= 1.0 {
-            tried += 1;
-            assert!(cost(&other) >= held.cost * (1.0 - 1e-4), "{values:?}");
+        let inside = values[0] <= 1.0 && values.iter().all(|value| *value >= 0.0);
+        if inside && cost(&other) < held.cost * (1.0 - 1e-4) {
+            cheaper += 1;
+            assert!(most(&other) > 1.0, "{values:?}");
         }
     }
-    assert!(tried > 500);
+    assert!(cheaper > 100, "{cheaper}");
     // Where it is conserved anyway, no bit changes; where no weights can, it is refused.
     let dark = noisy(&dielectric(), &grid(&[20.0, 60.0], 4, 80), 0.03, 4);
     assert_eq!(fit(&dark, &bounded(false)).params, fit(&dark, &bounded(true)).params);

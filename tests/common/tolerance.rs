@@ -199,6 +199,8 @@ pub const ROBUST_RHO_D: Tolerance = Tolerance(0.015);
 pub const ROBUST_M: Tolerance = Tolerance(0.04);
 /// Of a robust fit of a scan with many outliers against the truth, with noise of 5 %; measured 0.0124.
 pub const ROBUST_TRUTH: Tolerance = Tolerance(0.015);
+/// The same of a robust fit and one of a scan without its outliers, over the samples of the scan; measured 1e-9.
+pub const ROBUST_SAME: Tolerance = Tolerance(1e-9);
 // Other lobes.
 
 /// ln f and its derivatives of models put together from other lobes against 60 digits, in epsilons, f64.
@@ -309,8 +311,10 @@ pub const APERTURE: Tolerance = Tolerance(2e-4);
 
 // Scans of any size.
 
-/// Relative difference of parameters and standard errors of a scan times 1e-300 to 1e300; measured 4.2e-10.
-pub const SCALED_F64: Tolerance = Tolerance(1e-9);
+/// Relative difference of parameters of a scan times 1e-300 to 1e300, whose costs agree to 1e-14; measured 1.3e-9.
+pub const SCALED_F64: Tolerance = Tolerance(2e-9);
+/// The same of standard errors, of which those of rho_s and n are as large as their values; measured 1.8e-5.
+pub const SCALED_ERRORS_F64: Tolerance = Tolerance(3e-5);
 /// The same in single precision, times 1e-30 to 1e30; measured 1.6e-5.
 pub const SCALED_F32: Tolerance = Tolerance(2e-5);
 /// The same of what `fit` tells of a scan with parameters that are determined only together; measured 1.8e-6.

@@ -204,7 +204,9 @@ class Fit:
         return "\n".join(lines)
 
     def _known(self, name: str, error: float) -> str:
-        return "on a bound" if name in self.at_bound else "held" if error == 0 else f"+- {error:.2g}"
+        if name in self.at_bound:
+            return "on a bound"
+        return "held" if error == 0 else "not determined" if np.isinf(error) else f"+- {error:.2g}"
 
     def _repr_html_(self) -> str:
         return _draw.html(self)

@@ -105,13 +105,16 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let weight = uncertainty(data, text, &lines)?;
     let mut scans: Vec<RawScan> = Vec::new();
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
+    let theta_i = in_degrees("theta_i", &data.theta_i)?;
+    let theta_r = in_degrees("theta_r", &data.theta_r)?;
+    let phi_i = in_degrees("phi_i", &data.phi_i)?;
+    let phi_r = in_degrees("phi_r", &data.phi_r)?;
     for k in 0..count {
         let number = |variable: &Variable| number(variable.values[k], text, &lines);
-        let angle = |name: &str, variable: &Variable| degrees(name, &variable.unit, number(variable)?);
         let row = Row {
-            theta_i: angle("theta_i", &data.theta_i)?,
-            theta_s: angle("theta_r", &data.theta_r)?,
-            delta_phi: Some(angle("phi_r", &data.phi_r)? - angle("phi_i", &data.phi_i)?),
+            theta_i: theta_i(number(&data.theta_i)?),
+            theta_s: theta_r(number(&data.theta_r)?),
+            delta_phi: Some(phi_r(number(&data.phi_r)?) - phi_i(number(&data.phi_i)?)),
             value: number(&data.brdf)?,
             weight: weight(k)?,
             line: lines.place(text, data.brdf.values[k].get()).0,
@@ -202,11 +205,11 @@ fn number(raw: &RawValue, text: &str, lines: &Lines) -> Result<f64, Error> {
     })
 }
 
-fn degrees(name: &str, unit: &str, angle: f64) -> Result<f64, Error> {
-    match Unit::parse(unit) {
-        Some(Unit::Deg) => Ok(angle),
-        Some(Unit::Rad) => Ok(angle.to_degrees()),
-        _ => Err(Error::new(format!("the unit of {name} is '{}'", shown(unit))).help("give deg, ° or rad")),
+fn in_degrees(name: &str, angle: &Variable) -> Result<fn(f64) -> f64, Error> {
+    match Unit::parse(&angle.unit) {
+        Some(Unit::Deg) => Ok(|angle| angle),
+        Some(Unit::Rad) => Ok(f64::to_degrees),
+        _ => Err(Error::new(format!("the unit of {name} is '{}'", shown(&angle.unit))).help("give deg, ° or rad")),
     }
 }
 

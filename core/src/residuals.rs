@@ -101,9 +101,18 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'
         }
     }
 
-    /// Its parts of [`PART`] blocks.
-    pub fn parts(self) -> impl Iterator<Item = Self> {
-        self.blocks.chunks(PART).map(move |blocks| Residuals { blocks, ..self })
+    /// Number of its parts of [`PART`] blocks.
+    pub fn parts(&self) -> usize {
+        self.blocks.len().div_ceil(PART)
+    }
+
+    /// Part `k` of them.
+    pub fn part(&self, k: usize) -> Self {
+        let end = self.blocks.len().min((k + 1) * PART);
+        Residuals {
+            blocks: &self.blocks[k * PART..end],
+            ..*self
+        }
     }
 
     /// What `of` gives of each part, added in order.
@@ -113,9 +122,10 @@ impl<'a, R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'
         if ALONE || self.blocks.len() <= PART {
             return of(self);
         }
-        let mut parts = self.parts();
-        let mut sum = of(&parts.next().unwrap_or(*self));
-        parts.for_each(|part| add(&mut sum, &of(&part)));
+        let mut sum = of(&self.part(0));
+        for k in 1..self.parts() {
+            add(&mut sum, &of(&self.part(k)));
+        }
         sum
     }
 

@@ -1,7 +1,5 @@
 //! A scan through an aperture: the residual of a sample is that of the mean of f over the directions that the detector sees.
 
-use std::marker::PhantomData;
-
 use brdfit_core::geometry::{Block, LANES, Sample};
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::model::{GROUP, Model, Rows};
@@ -11,31 +9,57 @@ use brdfit_core::search::{Candidate, Region, Scene};
 
 use crate::error::FitError;
 use crate::instrument::aperture::directions;
-use crate::passes::{Kernel, blocks_of};
+use crate::passes::{Both, Kernel, blocks_of};
 
 /// Lanes that go through a model side by side, and groups of them in a block.
 const GROUPS: usize = LANES / GROUP;
 
 /// One sample: the blocks of its directions.
 struct Part<const C: usize> {
-    blocks: Vec<Block<f64, LANES, C>>,
+    blocks: Blocks<C>,
     /// Of each lane; 0 for an empty one.
     shares: Vec<[f64; LANES]>,
     ln_f: f64,
     weight: f64,
 }
 
-/// A scan of model `M` through an aperture.
-pub struct Averaged<'a, M, const P: usize, const C: usize> {
+type Blocks<const C: usize> = Vec<Block<f64, LANES, C>>;
+
+/// The model of such a scan, whatever its type.
+struct Passes<const P: usize, const C: usize> {
+    blocks: fn(&[Sample<f64>]) -> Result<Blocks<C>, FitError>,
+    /// See [`rows`].
+    rows: fn(&[f64; P], &Blocks<C>, bool) -> Vec<Rows<f64, GROUP, P>>,
+}
+
+/// A scan through an aperture.
+pub struct Averaged<'a, const P: usize, const C: usize> {
     /// The same scan with a point for a detector: what it proposes is a start here too.
     point: &'a Kernel<'a, f64, P>,
     parts: Vec<Part<C>>,
-    model: PhantomData<M>,
+    passes: Passes<P, C>,
 }
 
-impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P, C> {
-    /// Of an aperture of this half-angle, radians; `point` is the scan without it.
-    pub fn new(point: &'a Kernel<'a, f64, P>, samples: &[Sample<f64>], half_angle: f64) -> Result<Self, FitError> {
+impl<'a, const P: usize, const C: usize> Averaged<'a, P, C> {
+    /// Of model `M` and an aperture of this half-angle, radians; `point` is the scan without it.
+    pub fn new<M: Both<P, C>>(
+        point: &'a Kernel<'a, f64, P>,
+        samples: &[Sample<f64>],
+        half_angle: f64,
+    ) -> Result<Self, FitError> {
+        let passes = Passes {
+            blocks: blocks_of::<f64, M, P, C>,
+            rows: rows::<M, P, C>,
+        };
+        Averaged::of(passes, point, samples, half_angle)
+    }
+
+    fn of(
+        passes: Passes<P, C>,
+        point: &'a Kernel<'a, f64, P>,
+        samples: &[Sample<f64>],
+        half_angle: f64,
+    ) -> Result<Self, FitError> {
         let part = |sample: &Sample<f64>| {
             let (directions, shares): (Vec<Sample<f64>>, Vec<f64>) = directions(sample, half_angle)
                 .into_iter()
@@ -47,7 +71,7 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
                 lanes
             });
             Ok(Part {
-                blocks: blocks_of::<f64, M, P, C>(&directions)?,
+                blocks: (passes.blocks)(&directions)?,
                 shares: shares.collect(),
                 ln_f: Real::portable_ln(sample.brdf),
                 weight: sample.weight.abs(),
@@ -56,35 +80,31 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
         Ok(Averaged {
             point,
             parts: samples.iter().map(part).collect::<Result<_, FitError>>()?,
-            model: PhantomData,
+            passes,
         })
     }
 
-    /// Residual of a sample, with its derivatives if `GRADIENT`.
-    fn row<const GRADIENT: bool>(&self, pass: &M::Pass, part: &Part<C>) -> (f64, [f64; P]) {
-        let mut rows: Vec<Rows<f64, GROUP, P>> = Vec::with_capacity(GROUPS * part.blocks.len());
+    /// Residual of a sample, with its derivatives if `gradient`.
+    fn row(&self, x: &[f64; P], part: &Part<C>, gradient: bool) -> (f64, [f64; P]) {
+        let rows = (self.passes.rows)(x, &part.blocks, gradient);
+        let shares = |place: usize| Pack::<f64, GROUP>::gather(&part.shares[place / GROUPS], place % GROUPS).0;
         let mut top = -f64::MAX;
-        for (block, shares) in part.blocks.iter().zip(&part.shares) {
-            let begun = M::begin(pass, block);
-            for lane in 0..GROUPS {
-                let row = M::rows::<GRADIENT>(pass, block, &begun, lane);
-                for (ln_f, share) in row.ln_f.0.into_iter().zip(Pack::<f64, GROUP>::gather(shares, lane).0) {
-                    if share > 0.0 {
-                        top = top.max(ln_f);
-                    }
+        for (place, row) in rows.iter().enumerate() {
+            for (ln_f, share) in row.ln_f.0.into_iter().zip(shares(place)) {
+                if share > 0.0 {
+                    top = top.max(ln_f);
                 }
-                rows.push(row);
             }
         }
         let (mut sum, mut slopes) = (0.0, [0.0; P]);
         for (place, row) in rows.iter().enumerate() {
-            let shares = Pack::<f64, GROUP>::gather(&part.shares[place / GROUPS], place % GROUPS).0;
+            let shares = shares(place);
             for half in 0..GROUP {
                 if shares[half] > 0.0 {
                     let f = shares[half] * Real::portable_exp(row.ln_f.0[half] - top);
                     sum += f;
                     for k in 0..P {
-                        if GRADIENT {
+                        if gradient {
                             slopes[k] += f * row.gradient[k].0[half];
                         }
                     }
@@ -96,18 +116,36 @@ impl<'a, M: Model<f64, P, C>, const P: usize, const C: usize> Averaged<'a, M, P,
     }
 }
 
-impl<M: Model<f64, P, C>, const P: usize, const C: usize> Problem<f64, P> for Averaged<'_, M, P, C> {
+/// The model in all lanes of some blocks, with its derivatives if `gradient`.
+fn rows<M: Both<P, C>, const P: usize, const C: usize>(
+    x: &[f64; P],
+    blocks: &Blocks<C>,
+    gradient: bool,
+) -> Vec<Rows<f64, GROUP, P>> {
+    let pass = <M as Model<f64, P, C>>::pass(x);
+    let mut rows = Vec::with_capacity(GROUPS * blocks.len());
+    for block in blocks {
+        let begun = M::begin(&pass, block);
+        for lane in 0..GROUPS {
+            rows.push(match gradient {
+                true => M::rows::<true>(&pass, block, &begun, lane),
+                false => M::rows::<false>(&pass, block, &begun, lane),
+            });
+        }
+    }
+    rows
+}
+
+impl<const P: usize, const C: usize> Problem<f64, P> for Averaged<'_, P, C> {
     fn cost(&self, x: &[f64; P]) -> f64 {
-        let pass = M::pass(x);
-        let residuals = self.parts.iter().map(|part| self.row::<false>(&pass, part).0);
+        let residuals = self.parts.iter().map(|part| self.row(x, part, false).0);
         residuals.map(|residual| residual * residual).sum()
     }
 
     fn linearize(&self, x: &[f64; P]) -> Linearization<f64, P> {
-        let pass = M::pass(x);
         let mut sums = Linearization::zero();
         for part in &self.parts {
-            let (residual, slopes) = self.row::<true>(&pass, part);
+            let (residual, slopes) = self.row(x, part, true);
             sums.add(residual, &slopes);
         }
         sums
@@ -118,7 +156,7 @@ impl<M: Model<f64, P, C>, const P: usize, const C: usize> Problem<f64, P> for Av
     }
 }
 
-impl<M: Model<f64, P, C>, const P: usize, const C: usize> Scene<f64, P> for Averaged<'_, M, P, C> {
+impl<const P: usize, const C: usize> Scene<f64, P> for Averaged<'_, P, C> {
     fn propose(&self, bounds: &Bounds<f64, P>, seed: u64, i: u64, region: Region<f64, P>) -> Candidate<f64, P> {
         self.point.propose(bounds, seed, i, region)
     }

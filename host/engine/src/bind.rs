@@ -1,156 +1,183 @@
-//! The searches over the passes of one model, compiled: where the types of a model end and its values at run time begin.
+//! The searches over the passes of one model: where the types of a model end and its values at run time begin.
 //!
 //! Only the passes are compiled for each model; a search sees them through one dynamic call a pass, and is compiled once for each number of parameters.
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::model::Model;
+use brdfit_core::model::{Model, Parameter};
+use brdfit_core::real::Real;
 
 use crate::averaged::Averaged;
-use crate::compiled::{Compiled, Searches};
+use crate::compiled::{Compiled, Found, Joint, Searches, Sets};
 use crate::error::FitError;
 use crate::options::{FitOptions, Precision};
 use crate::outcome::Outcome;
-use crate::passes::{Both, Kernel, blocks_of, scene, with};
-use crate::search::joint::{self, JointFit};
+use crate::passes::{Both, Kernel, blocks_of, scene};
+use crate::search::joint;
 use crate::search::setup::Setup;
 use crate::search::watched::{self, Trace};
 use crate::search::{self, enough};
+use crate::simd::Simd;
 use crate::values::Values;
 
-/// A cost and the parameters where it is.
-type Found = Option<(f64, Values)>;
-/// A joint fit, or the place of the scan that cannot be fitted, and why.
-type Joint = Result<JointFit, (usize, FitError)>;
+/// Makes a scan of samples, and does something with it.
+type Point<R, const P: usize> = fn(&[Sample<f64>], Simd, Then<R, P>) -> Result<(), FitError>;
+/// Makes a scan through an aperture of some half-angle from that without it, and does something with it.
+type Through<const P: usize> = fn(&Kernel<f64, P>, &[Sample<f64>], f64, Then<f64, P>) -> Result<(), FitError>;
+/// What is done with a scan.
+type Then<'a, R, const P: usize> = &'a mut dyn FnMut(&Kernel<R, P>);
 
-/// The searches of model `M`; `VECTORS` says for which instructions, as in [`FastScan`].
-pub(crate) const fn set<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Compiled {
-    Compiled {
-        terms,
-        fit: fit::<M, P, C, VECTORS>,
-        descend: descend::<M, P, C, VECTORS>,
-        trace: trace::<M, P, C, VECTORS>,
+/// A model with `P` parameters, whatever its type.
+struct Bound<const P: usize> {
+    own: &'static [Parameter; P],
+    double: Point<f64, P>,
+    single: Point<f32, P>,
+    /// If that is compiled.
+    through: Option<Through<P>>,
+}
+
+/// `VECTORS` says for which instructions, as in [`crate::simd::FastScan`].
+const fn bound<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>() -> Bound<P> {
+    Bound {
+        own: &<M as Model<f64, P, C>>::PARAMETERS,
+        double: point::<f64, M, P, C, VECTORS>,
+        single: point::<f32, M, P, C, VECTORS>,
+        through: None,
     }
 }
 
-/// All of model `M`, with `sets` of its terms on their own.
+/// Model `M` with all its terms, and the `sets` of them that are compiled on their own.
 pub(crate) const fn searches<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    terms: u8,
     sets: &'static [Compiled],
-) -> Searches {
-    Searches {
-        whole: set::<M, P, C, VECTORS>(terms),
-        through: through::<M, P, C, VECTORS>,
-        through_from: through_from::<M, P, C, VECTORS>,
-        joint: joint::<M, P, C, VECTORS>,
+) -> Sets {
+    Sets {
+        whole: const {
+            &Bound {
+                through: Some(through::<M, P, C>),
+                ..bound::<M, P, C, VECTORS>()
+            }
+        },
         sets,
     }
 }
 
-/// The same through the aperture.
-fn with_aperture<M: Both<P, C>, T, const P: usize, const C: usize, const VECTORS: u8>(
+/// A set of terms on its own.
+pub(crate) const fn set<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(terms: u8) -> Compiled {
+    Compiled {
+        terms,
+        searches: const { &bound::<M, P, C, VECTORS>() },
+    }
+}
+
+fn point<R: Real, M: Model<R, P, C> + Send + Sync, const P: usize, const C: usize, const VECTORS: u8>(
+    samples: &[Sample<f64>],
+    simd: Simd,
+    then: Then<R, P>,
+) -> Result<(), FitError> {
+    let blocks = blocks_of::<R, M, P, C>(samples)?;
+    then(&scene::<R, M, P, C, VECTORS>(&blocks, simd));
+    Ok(())
+}
+
+fn through<M: Both<P, C>, const P: usize, const C: usize>(
+    point: &Kernel<f64, P>,
+    samples: &[Sample<f64>],
+    half_angle: f64,
+    then: Then<f64, P>,
+) -> Result<(), FitError> {
+    then(&Averaged::new::<M>(point, samples, half_angle)?);
+    Ok(())
+}
+
+/// What `then` makes of the samples as `point` has them compiled.
+fn with<R: Real, T, const P: usize>(
+    point: Point<R, P>,
     samples: &[Sample<f64>],
     options: &FitOptions,
-    then: impl FnOnce(&Kernel<f64, P>) -> Result<T, FitError>,
+    then: impl Fn(&Kernel<R, P>) -> Result<T, FitError>,
 ) -> Result<T, FitError> {
-    with::<f64, M, T, P, C, VECTORS>(samples, options.simd, |point| {
-        then(&Averaged::<M, P, C>::new(point, samples, options.instrument.aperture)?)
-    })
+    let mut made = Err(FitError::Interrupted);
+    point(samples, options.simd, &mut |scan| made = then(scan))?;
+    made
 }
 
-fn fit<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-    setup: &Setup,
-    known: &[Values],
-) -> Result<Outcome, FitError> {
-    enough(samples, options)?;
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    with::<f64, M, _, P, C, VECTORS>(samples, options.simd, |exact| match options.precision {
-        Precision::F64 => search::run(exact, exact, own, samples, options, setup, known),
-        Precision::F32 => with::<f32, M, _, P, C, VECTORS>(samples, options.simd, |scene| {
-            search::run(scene, exact, own, samples, options, setup, known)
-        }),
-    })
+impl<const P: usize> Bound<P> {
+    /// The same as the detector of `options` sees them.
+    fn seen<T>(
+        &self,
+        samples: &[Sample<f64>],
+        options: &FitOptions,
+        then: impl Fn(&Kernel<f64, P>) -> Result<T, FitError>,
+    ) -> Result<T, FitError> {
+        let aperture = options.instrument.aperture;
+        let Some(through) = self.through.filter(|_| aperture > 0.0) else {
+            return with(self.double, samples, options, then);
+        };
+        with(self.double, samples, options, |point| {
+            let mut made = Err(FitError::Interrupted);
+            through(point, samples, aperture, &mut |scan| made = then(scan))?;
+            made
+        })
+    }
+
+    /// The joint fit of all scans, the first of which are `before`.
+    fn joint_after(
+        &self,
+        before: &[&Kernel<f64, P>],
+        all: &[&[Sample<f64>]],
+        shared: &[bool],
+        options: &FitOptions,
+    ) -> Joint {
+        let place = before.len();
+        let Some(samples) = all.get(place) else {
+            return joint::run(before, self.own, shared, options, all);
+        };
+        let found = self.seen(samples, options, |scan| {
+            Ok(self.joint_after(&[before, &[scan]].concat(), all, shared, options))
+        });
+        found.map_err(|error| (place, error))?
+    }
 }
 
-fn descend<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-    setup: &Setup,
-    starts: &[Values],
-) -> Result<Found, FitError> {
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    with::<f64, M, _, P, C, VECTORS>(samples, options.simd, |scene| {
-        search::descend_from(scene, own, samples, options, setup, starts)
-    })
-}
+impl<const P: usize> Searches for Bound<P> {
+    fn fit(
+        &self,
+        samples: &[Sample<f64>],
+        options: &FitOptions,
+        setup: &Setup,
+        known: &[Values],
+    ) -> Result<Outcome, FitError> {
+        enough(samples, options)?;
+        self.seen(samples, options, |exact| match options.precision {
+            Precision::F32 if options.instrument.aperture == 0.0 => with(self.single, samples, options, |scene| {
+                search::run(scene, exact, self.own, samples, options, setup, known)
+            }),
+            _ => search::run(exact, exact, self.own, samples, options, setup, known),
+        })
+    }
 
-fn through<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-    setup: &Setup,
-    known: &[Values],
-) -> Result<Outcome, FitError> {
-    enough(samples, options)?;
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    with_aperture::<M, _, P, C, VECTORS>(samples, options, |seen| {
-        search::run(seen, seen, own, samples, options, setup, known)
-    })
-}
+    fn descend(
+        &self,
+        samples: &[Sample<f64>],
+        options: &FitOptions,
+        setup: &Setup,
+        starts: &[Values],
+    ) -> Result<Found, FitError> {
+        self.seen(samples, options, |scene| {
+            search::descend_from(scene, self.own, samples, options, setup, starts)
+        })
+    }
 
-fn through_from<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-    setup: &Setup,
-    starts: &[Values],
-) -> Result<Found, FitError> {
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    with_aperture::<M, _, P, C, VECTORS>(samples, options, |seen| {
-        search::descend_from(seen, own, samples, options, setup, starts)
-    })
-}
+    fn trace(&self, samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
+        enough(samples, options)?;
+        with(self.double, samples, options, |exact| match options.precision {
+            Precision::F64 => Ok(watched::watch(exact, exact, self.own, options)),
+            Precision::F32 => with(self.single, samples, options, |scene| {
+                Ok(watched::watch(scene, exact, self.own, options))
+            }),
+        })
+    }
 
-fn trace<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    options: &FitOptions,
-) -> Result<Trace, FitError> {
-    enough(samples, options)?;
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    with::<f64, M, _, P, C, VECTORS>(samples, options.simd, |exact| match options.precision {
-        Precision::F64 => Ok(watched::watch(exact, exact, own, options)),
-        Precision::F32 => with::<f32, M, _, P, C, VECTORS>(samples, options.simd, |scene| {
-            Ok(watched::watch(scene, exact, own, options))
-        }),
-    })
-}
-
-fn joint<M: Both<P, C>, const P: usize, const C: usize, const VECTORS: u8>(
-    all: &[&[Sample<f64>]],
-    shared: &[bool],
-    options: &FitOptions,
-) -> Joint {
-    let each = all.iter().enumerate();
-    let each = each.map(|(place, samples)| blocks_of::<f64, M, P, C>(samples).map_err(|error| (place, error)));
-    let blocks: Vec<_> = each.collect::<Result<_, _>>()?;
-    let scans: Vec<_> = blocks
-        .iter()
-        .map(|blocks| scene::<f64, M, P, C, VECTORS>(blocks, options.simd))
-        .collect();
-    let points: Vec<&Kernel<f64, P>> = scans.iter().map(|scan| scan as &Kernel<f64, P>).collect();
-    let aperture = options.instrument.aperture;
-    let each = points.iter().zip(all).enumerate();
-    let seen = each.map(|(place, (point, samples))| {
-        Averaged::<M, P, C>::new(*point, samples, aperture).map_err(|error| (place, error))
-    });
-    let seen: Vec<_> = if aperture > 0.0 {
-        seen.collect::<Result<_, _>>()?
-    } else {
-        Vec::new()
-    };
-    let scans: Vec<&Kernel<f64, P>> = match seen.is_empty() {
-        true => points,
-        false => seen.iter().map(|scan| scan as &Kernel<f64, P>).collect(),
-    };
-    let own = &<M as Model<f64, P, C>>::PARAMETERS;
-    joint::run::<P>(&scans, own, shared, options, all)
+    fn joint(&self, all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Joint {
+        self.joint_after(&[], all, shared, options)
+    }
 }

@@ -32,7 +32,6 @@ mod taylor;
 
 use brdfit_core::brdf::Params;
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use branch::{Done, Found, Task};
 use queue::Queue;
@@ -45,6 +44,7 @@ use crate::error::FitError;
 use crate::least_squares::descend;
 use crate::options::FitOptions;
 use crate::scale::Scale;
+use crate::threads;
 use crate::values::Values;
 
 /// What is to be proved, and what may end it.
@@ -189,7 +189,7 @@ fn prove(
         let done: Vec<Done> = if claim.alone {
             round.iter().map(process).collect()
         } else {
-            round.par_iter().map(process).collect()
+            threads::map(&round, &process)
         };
         let mut found: Found = None;
         for done in done {

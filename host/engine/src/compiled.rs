@@ -12,48 +12,68 @@ use crate::search::watched::Trace;
 use crate::values::Values;
 
 /// A cost and the parameters where it is.
-type Found = Option<(f64, Values)>;
+pub type Found = Option<(f64, Values)>;
 /// A joint fit, or the place of the scan that cannot be fitted, and why.
-type Joint = Result<JointFit, (usize, FitError)>;
+pub type Joint = Result<JointFit, (usize, FitError)>;
 
 /// The searches of one model, or of one set of its terms.
-#[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]
-#[derive(Clone, Copy, Debug)]
+pub trait Searches: Send + Sync {
+    fn fit(
+        &self,
+        samples: &[Sample<f64>],
+        options: &FitOptions,
+        setup: &Setup,
+        known: &[Values],
+    ) -> Result<Outcome, FitError>;
+
+    /// The best end of fits from `starts`.
+    fn descend(
+        &self,
+        samples: &[Sample<f64>],
+        options: &FitOptions,
+        setup: &Setup,
+        starts: &[Values],
+    ) -> Result<Found, FitError>;
+
+    fn trace(&self, samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError>;
+
+    fn joint(&self, all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -> Joint;
+}
+
+/// A set of terms with its searches.
+#[derive(Clone, Copy)]
 pub struct Compiled {
     pub terms: u8,
-    pub fit: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Outcome, FitError>,
-    pub descend: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Found, FitError>,
-    pub trace: fn(&[Sample<f64>], &FitOptions) -> Result<Trace, FitError>,
+    pub searches: &'static dyn Searches,
 }
 
-/// The searches of one model.
-#[allow(clippy::type_complexity, reason = "a signature says more than names for its parts")]
-#[derive(Clone, Copy, Debug)]
-pub struct Searches {
-    pub whole: Compiled,
-    /// A fit, and one from given values, through an aperture.
-    pub through: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Outcome, FitError>,
-    pub through_from: fn(&[Sample<f64>], &FitOptions, &Setup, &[Values]) -> Result<Found, FitError>,
+/// All that is compiled of one model.
+pub struct Sets {
+    /// The model with all its terms, also as an aperture sees it.
+    pub whole: &'static dyn Searches,
     /// Sets of its terms that are compiled on their own.
     pub sets: &'static [Compiled],
-    pub joint: fn(&[&[Sample<f64>]], &[bool], &FitOptions) -> Joint,
 }
 
-/// Those of a model.
-pub fn of(model: &Model) -> &'static Searches {
-    let searches = model.searches.downcast_ref();
-    searches.expect("whoever makes a model gives it these")
+fn of(model: &Model) -> &'static Sets {
+    let sets = model.searches.downcast_ref();
+    sets.expect("whoever makes a model gives it these")
 }
 
-/// What is compiled of the terms of `options`, and the options for it: what no compiled set leaves out is held.
-pub fn set_of(options: &FitOptions) -> Result<(&'static Compiled, FitOptions), FitError> {
-    let searches = of(options.model);
+/// The searches of a model with all its terms.
+pub fn whole(model: &Model) -> &'static dyn Searches {
+    of(model).whole
+}
+
+/// The searches of the terms of `options`, and the options for them: what no compiled set leaves out is held.
+pub fn set_of(options: &FitOptions) -> Result<(&'static dyn Searches, FitOptions), FitError> {
+    let sets = of(options.model);
     let held = options.held()?;
-    Ok(match searches.sets.iter().find(|set| set.terms == held.terms) {
+    Ok(match sets.sets.iter().find(|set| set.terms == held.terms) {
         Some(set) => {
             let terms = held.terms;
-            (set, FitOptions { terms, ..*options })
+            (set.searches, FitOptions { terms, ..*options })
         }
-        None => (&searches.whole, held),
+        None => (sets.whole, held),
     })
 }

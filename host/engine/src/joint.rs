@@ -39,5 +39,5 @@ fn fit_ordinary(all: &[&[Sample<f64>]], shared: &[bool], options: &FitOptions) -
     if known < parameters {
         return Err(together(FitError::TooFew(known, parameters)));
     }
-    (compiled::of(options.model).joint)(all, shared, &options)
+    compiled::whole(options.model).joint(all, shared, &options)
 }

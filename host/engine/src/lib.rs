@@ -29,6 +29,7 @@ pub mod models;
 pub mod robust;
 pub mod scale;
 pub mod simd;
+pub mod threads;
 pub mod trace;
 pub mod uncertainty;
 pub mod until;

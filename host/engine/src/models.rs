@@ -26,7 +26,7 @@ pub static MODELS: [Model; 20] = [
         parameters: parameters_of::<Microfacet<ALL>, 6, 6>(),
         terms: ALL,
         point: point::<Microfacet<ALL>, 6, 6>(),
-        searches: const { &searches::<Microfacet<ALL>, 6, 6, EVERY>(ALL, &EQ_14) },
+        searches: const { &searches::<Microfacet<ALL>, 6, 6, EVERY>(&EQ_14) },
     },
     microfacet::<ALL, Beckmann, Smith, 6, 8>("beckmann-smith", "Beckmann, Smith masking", "Walter et al. 2007"),
     microfacet::<ALL, Beckmann, NoMasking, 6, 6>("beckmann-unmasked", "Beckmann, no masking", EQ_5),
@@ -70,7 +70,7 @@ pub static MODELS: [Model; 20] = [
         parameters: parameters_of::<Microfacet<{ D | S | A }>, 5, 6>(),
         terms: D | S | A,
         point: point::<Microfacet<{ D | S | A }>, 5, 6>(),
-        searches: const { &searches::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(D | S | A, &[]) },
+        searches: const { &searches::<Microfacet<{ D | S | A }>, 5, 6, AVX512>(&[]) },
     },
     microfacet::<{ D | S | A }, Beckmann, InAngle<VGroove>, 5, 6>(
         "torrance-sparrow",
@@ -146,7 +146,7 @@ impl Model {
             parameters: parameters_of::<M, P, C>(),
             terms: 0,
             point: point::<M, P, C>(),
-            searches: const { &searches::<M, P, C, SCALAR>(0, &[]) },
+            searches: const { &searches::<M, P, C, SCALAR>(&[]) },
         }
     }
 
@@ -189,7 +189,7 @@ where
         parameters: parameters_of::<Microfacet<TERMS, D, M>, P, C>(),
         terms: TERMS & ALL,
         point: point::<Microfacet<TERMS, D, M>, P, C>(),
-        searches: const { &searches::<Microfacet<TERMS, D, M>, P, C, AVX2>(TERMS & ALL, &[]) },
+        searches: const { &searches::<Microfacet<TERMS, D, M>, P, C, AVX2>(&[]) },
     }
 }
 

@@ -62,16 +62,6 @@ pub(crate) fn scene<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: 
     FastScan::new(Residuals::new(blocks), simd)
 }
 
-/// What `then` does with the samples as a scene.
-pub(crate) fn with<R: Real, M: Model<R, P, C> + Send + Sync, T, const P: usize, const C: usize, const VECTORS: u8>(
-    samples: &[Sample<f64>],
-    simd: Simd,
-    then: impl FnOnce(&Kernel<R, P>) -> Result<T, FitError>,
-) -> Result<T, FitError> {
-    let blocks = blocks_of::<R, M, P, C>(samples)?;
-    then(&scene::<R, M, P, C, VECTORS>(&blocks, simd))
-}
-
 /// ln f and its derivatives by the parameters; none beyond the horizon.
 type Slopes = Option<(f64, Values)>;
 

@@ -8,13 +8,13 @@ mod scale;
 mod subset;
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use crate::error::FitError;
 use crate::least_squares::{self, descend};
 use crate::options::{FitOptions, Method};
 use crate::outcome::Outcome;
 pub use crate::outcome::Robust;
+use crate::threads;
 use crate::values::Values;
 use scale::Biweight;
 
@@ -23,7 +23,7 @@ const OUTLIER: f64 = 6.0;
 /// Fewer samples than this for a free parameter do not tell which of them is an outlier.
 const LEAST: usize = 3;
 /// Fits of a few samples.
-const SUBSETS: u64 = 200;
+const SUBSETS: usize = 200;
 /// Candidates of each.
 const CANDIDATES: u32 = 30;
 /// Samples that the starts are judged by, at most.
@@ -139,13 +139,13 @@ fn start(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Re
         method: Method::Default,
         ..*options
     };
-    let each = (0..SUBSETS).into_par_iter().map(|k| {
-        let few = subset::draw(&judges, options.seed, k, free + 2);
+    let each = threads::each(SUBSETS, &|k| {
+        let few = subset::draw(&judges, options.seed, k as u64, free + 2);
         let found = least_squares::fit(&few, &short, &[])?;
         // One step tells most of what all would.
         judge.step(&judges, options, &judge.at(&judges, options, found.params))
     });
-    let mut starts: Vec<At> = each.collect::<Result<_, FitError>>()?;
+    let mut starts: Vec<At> = each.into_iter().collect::<Result<_, FitError>>()?;
     starts.push(judge.at(&judges, options, outcome.params));
     starts.extend(
         outcome
@@ -157,10 +157,8 @@ fn start(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Re
     starts.dedup_by(|b, a| b.scale == a.scale);
     starts.truncate(FOLLOWED);
     let judge = Biweight::new(samples.len(), free);
-    let ends = starts
-        .into_par_iter()
-        .map(|from| follow(samples, options, &judge, from.params));
-    let ends: Vec<At> = ends.collect::<Result<_, FitError>>()?;
+    let ends = threads::map(&starts, &|from| follow(samples, options, &judge, from.params));
+    let ends: Vec<At> = ends.into_iter().collect::<Result<_, FitError>>()?;
     let best = ends.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale));
     let best = best.unwrap_or_else(|| judge.at(samples, options, outcome.params));
     let limit = threshold(samples.len().saturating_sub(free).max(1)) * best.scale;

@@ -15,13 +15,13 @@ use brdfit_core::lm::{self, Bounds, Options, Stop};
 use brdfit_core::model::Parameter;
 use brdfit_core::real::Real;
 use brdfit_core::search::{self, Found, Scene};
-use rayon::prelude::*;
 
 use crate::error::FitError;
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
 use crate::outcome::{Minimum, Outcome};
 use crate::passes::Kernel;
+use crate::threads;
 use crate::uncertainty;
 use crate::until::Watched;
 use crate::values::Values;
@@ -95,16 +95,17 @@ pub(crate) fn run<R: Real, const P: usize>(
     let found: Found<R, P> = match options.method {
         Method::Default => search::search_from(single(scene), &bounds, options.seed, starts, &known, &lm),
         Method::Paper => {
-            let own = (0..u64::from(starts)).into_par_iter();
-            // A million starts that end at once take seconds too.
-            let own = own.filter(|_| !options.until.is_over());
-            let own = own.map(|i| search::paper_fit(scene, &bounds, options.seed, i, &lm));
-            let more = known.par_iter().map(|&x| lm::fit(scene, &bounds, x, &lm));
-            let fits: Vec<_> = own.chain(more).collect();
+            let own = starts as usize;
+            let fits = threads::each(own + known.len(), &|i| match i.checked_sub(own) {
+                // A million starts that end at once take seconds too.
+                _ if options.until.is_over() => None,
+                None => Some(search::paper_fit(single(scene), &bounds, options.seed, i as u64, &lm)),
+                Some(k) => Some(lm::fit(single(scene), &bounds, known[k], &lm)),
+            });
             if options.until.is_over() {
                 return Err(FitError::Interrupted);
             }
-            search::paper(scene, &bounds, fits, &lm)
+            search::paper(single(scene), &bounds, fits.into_iter().flatten(), &lm)
         }
     };
     if options.until.is_over() {

@@ -4,10 +4,11 @@ use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
-use brdfit_core::residuals::{PART, Residuals};
+use brdfit_core::residuals::Residuals;
 use brdfit_core::search::{Candidate, Region, Scene};
 pub use pulp::NullaryFnOnce;
-use rayon::prelude::*;
+
+use crate::threads;
 
 /// A set of vector instructions.
 #[derive(Clone, Copy, Debug)]
@@ -156,24 +157,16 @@ impl<'a, R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, cons
 
     /// What `of` gives of each part of the scan ([`PART`]), on the threads of the pool, added in order.
     #[inline(always)]
-    fn summed<S: Send>(
-        &self,
-        of: impl Fn(&Residuals<'_, R, M, P, C>) -> S + Send + Sync,
-        add: impl Fn(&mut S, &S),
-    ) -> S {
-        if self.scan.blocks().len() <= PART {
+    fn summed<S: Send + Sync>(&self, of: &(dyn Fn(&Residuals<'_, R, M, P, C>) -> S + Sync), add: fn(&mut S, &S)) -> S {
+        if self.scan.parts() <= 1 {
             return of(&self.scan);
         }
-        let parts: Vec<_> = self.scan.parts().collect();
-        let mut sums: Vec<S> = parts.par_iter().map(of).collect();
-        let (first, others) = sums.split_at_mut(1);
-        others.iter().for_each(|part| add(&mut first[0], part));
-        sums.swap_remove(0)
+        threads::sum(self.scan.parts(), &|k| of(&self.scan.part(k)), add)
     }
 
     fn totals(&self, x: &[R; P]) -> [R; 3] {
         let of = |part: &Residuals<'_, R, M, P, C>| self.run(Sums(part, x), || part.scalar_totals(x));
-        self.summed(of, |sum, part| {
+        self.summed(&of, |sum, part| {
             sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += *part);
         })
     }
@@ -200,7 +193,7 @@ impl<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VE
     }
     fn linearize(&self, x: &[R; P]) -> Linearization<R, P> {
         let of = |part: &Residuals<'_, R, M, P, C>| self.run(Linearize(part, x), || part.scalar_linearize(x));
-        self.summed(of, Linearization::add_part)
+        self.summed(&of, Linearization::add_part)
     }
     fn bend(&self, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         self.scan.bend(x, step, to)
@@ -216,7 +209,7 @@ impl<R: Real, M: Model<R, P, C> + Sync, const P: usize, const C: usize, const VE
     fn weigh(&self, bounds: &Bounds<R, P>, candidate: &mut Candidate<R, P>) {
         self.scan.weigh_by(bounds, candidate, |x| {
             let of = |part: &Residuals<'_, R, M, P, C>| self.run(Weights(part, x), || part.scalar_weights(x));
-            self.summed(of, Linearization::add_part)
+            self.summed(&of, Linearization::add_part)
         });
     }
     fn level(&self, bounds: &Bounds<R, P>, x: &[R; P]) -> ([R; P], R) {

@@ -23,9 +23,9 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
     let Some(scale) = Scale::of(&[samples], options) else {
         let (set, options) = compiled::set_of(options)?;
-        return (set.trace)(samples, &options);
+        return set.trace(samples, &options);
     };
     let (set, options) = compiled::set_of(&scale.options(options)?)?;
-    let course = (set.trace)(&scale.samples(samples), &options)?;
+    let course = set.trace(&scale.samples(samples), &options)?;
     Ok(scale.trace(options.model.parameters, course))
 }

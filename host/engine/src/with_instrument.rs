@@ -3,7 +3,7 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::model::Role;
 
-use crate::compiled;
+use crate::compiled::{self, Searches};
 use crate::error::FitError;
 use crate::instrument::moved::{all_moved, allowed};
 use crate::instrument::{Offset, View};
@@ -169,12 +169,8 @@ fn descend_at(
     if options.instrument.limit.is_some() {
         setup.steep = WALLS[2] * least().max(f64::MIN_POSITIVE);
     }
-    let (options, through) = aimed(options)?;
-    if through {
-        return (compiled::of(options.model).through_from)(samples, &options, &setup, starts);
-    }
-    let (set, options) = compiled::set_of(&options)?;
-    (set.descend)(samples, &options, &setup, starts)
+    let (searches, options) = searches(options)?;
+    searches.descend(samples, &options, &setup, starts)
 }
 
 /// One search.
@@ -184,12 +180,17 @@ pub(crate) fn run(
     setup: &Setup,
     known: &[Values],
 ) -> Result<Outcome, FitError> {
+    let (searches, options) = searches(options)?;
+    searches.fit(samples, &options, setup, known)
+}
+
+/// The searches that `options` need, and the options for them.
+fn searches(options: &FitOptions) -> Result<(&'static dyn Searches, FitOptions), FitError> {
     let (options, through) = aimed(options)?;
     if through {
-        return (compiled::of(options.model).through)(samples, &options, setup, known);
+        return Ok((compiled::whole(options.model), options));
     }
-    let (set, options) = compiled::set_of(&options)?;
-    (set.fit)(samples, &options, setup, known)
+    compiled::set_of(&options)
 }
 
 /// The options for the scene that they need, and whether that is one through an aperture.

@@ -74,7 +74,6 @@ impl Jet {
     }
 
     /// The square root of a positive function.
-    #[inline(always)]
     pub fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         let first = (root * 2.0).reciprocal();
@@ -83,14 +82,12 @@ impl Jet {
     }
 
     /// The logarithm of a positive function.
-    #[inline(always)]
     pub fn ln(self) -> Self {
         let first = self.value.reciprocal();
         self.chain(self.value.ln(), first, -first.square())
     }
 
     /// The reciprocal of a positive function.
-    #[inline(always)]
     pub fn reciprocal(self) -> Self {
         let first = self.value.reciprocal();
         let second = first.square();
@@ -124,7 +121,6 @@ impl Mul<Interval> for Jet {
 
 impl Mul for Jet {
     type Output = Self;
-    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let (x, y) = (self, other);
         Jet {

@@ -6,7 +6,6 @@ use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::model::Parameter;
 use brdfit_core::search::{Found, search, search_from};
 use brdfit_core::uncertainty::Uncertainty;
-use rayon::prelude::*;
 
 use super::beside::{Beside, Rows, is_above};
 use super::setup::Setup;
@@ -15,6 +14,7 @@ use crate::error::FitError;
 use crate::layout::Layout;
 use crate::options::FitOptions;
 use crate::passes::Kernel;
+use crate::threads;
 use crate::until::Watched;
 use crate::values::Values;
 
@@ -207,10 +207,9 @@ impl<const P: usize> Scans<'_, P> {
         let lm = Options::default();
         let one = self.layout.bounds::<f64>(self.options);
         self.with(setup, |scans, rows| {
-            let separate: Vec<Found<f64, P>> = scans
-                .par_iter()
-                .map(|scan| search(single(*scan), &one, self.options.seed, starts(self.options), &lm))
-                .collect();
+            let separate = threads::map(scans, &|scan| {
+                search(single(*scan), &one, self.options.seed, starts(self.options), &lm)
+            });
             let problem = Joint::new(scans, self.is_shared());
             let together = Together {
                 scans,
@@ -297,8 +296,7 @@ impl<'a, const P: usize> Together<'a, P> {
         for found in self.separate {
             held.extend(found.minima.as_slice().iter().take(MINIMA).map(|minimum| minimum.x));
         }
-        let ends = held.par_iter().map(|held| self.from(problem, held));
-        let ends: Vec<Fit<f64, COORDINATES>> = ends.collect();
+        let ends = threads::map(&held, &|held| self.from(problem, held));
         let least = |fits: Vec<Fit<f64, COORDINATES>>| fits.into_iter().min_by(|a, b| a.at.cost.total_cmp(&b.at.cost));
         let mut best = least(ends).expect("the mean is a start");
         for _ in 0..LOOPS {
@@ -318,12 +316,12 @@ impl<'a, const P: usize> Together<'a, P> {
         for k in (0..P).filter(|&k| self.is_shared[k]) {
             (bounds.lower[k], bounds.upper[k]) = (held[k], held[k]);
         }
-        let each = self.scans.par_iter().zip(self.separate).map(|(scan, found)| {
-            let known: Vec<[f64; P]> = found.minima.as_slice().iter().map(|minimum| minimum.x).collect();
+        let each = threads::each(self.scans.len(), &|s| {
+            let (scan, minima) = (self.scans[s], &self.separate[s].minima);
+            let known: Vec<[f64; P]> = minima.as_slice().iter().map(|minimum| minimum.x).collect();
             let (seed, starts) = (self.options.seed, starts(self.options));
-            search_from(single(*scan), &bounds, seed, starts, &known, &lm).best.x
+            search_from(single(scan), &bounds, seed, starts, &known, &lm).best.x
         });
-        let each: Vec<[f64; P]> = each.collect();
         lm::fit(problem, &self.bounds, problem.join(each.into_iter()), &lm)
     }
 }

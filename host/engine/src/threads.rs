@@ -1,0 +1,33 @@
+//! Work shared among the threads of the pool.
+
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
+/// What `of` gives of 0, 1 ... `count` - 1, in this order.
+///
+/// What rayon is made of is compiled for each closure that it is given, in thousands of lines; this has one for all.
+pub fn each<S: Send + Sync>(count: usize, of: &(dyn Fn(usize) -> S + Sync)) -> Vec<S> {
+    let made: Vec<OnceLock<S>> = (0..count).map(|_| OnceLock::new()).collect();
+    run(count, &|k| {
+        let _ = made[k].set(of(k));
+    });
+    made.into_iter().filter_map(OnceLock::into_inner).collect()
+}
+
+/// The same of each item.
+pub fn map<T: Sync, S: Send + Sync>(items: &[T], of: &(dyn Fn(&T) -> S + Sync)) -> Vec<S> {
+    each(items.len(), &|k| of(&items[k]))
+}
+
+/// What `of` gives of 0, 1 ... `count` - 1, at least one, added in this order.
+pub(crate) fn sum<S: Send + Sync>(count: usize, of: &(dyn Fn(usize) -> S + Sync), add: fn(&mut S, &S)) -> S {
+    let mut sums = each(count, of);
+    let (first, others) = sums.split_at_mut(1);
+    others.iter().for_each(|part| add(&mut first[0], part));
+    sums.swap_remove(0)
+}
+
+fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    (0..count).into_par_iter().for_each(work);
+}

@@ -134,10 +134,10 @@ impl Error {
     /// What is wrong and what to do about it, without the place.
     pub fn message(&self) -> String {
         // What is wrong may be told in words of a file, such as the name of a column.
-        let what = plain(&self.what);
+        let what = bounded(&plain(&self.what));
         match &self.help {
-            Some(help) => format!("{what}; {}", plain(help)),
-            None => what.into_owned(),
+            Some(help) => format!("{what}; {}", bounded(&plain(help))),
+            None => what,
         }
     }
 }
@@ -149,6 +149,17 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// The text, without its middle where it is so long that nobody reads it: a list may come from a file.
+fn bounded(text: &str) -> String {
+    const HALF: usize = 600;
+    let count = text.chars().count();
+    if count <= 2 * HALF {
+        return text.to_string();
+    }
+    let begin = text.chars().take(HALF);
+    begin.chain(" ... ".chars()).chain(text.chars().skip(count - HALF)).collect()
+}
 
 /// Foreign text inside a message: on one line, and not too long.
 pub fn shown(text: &str) -> String {
@@ -183,6 +194,8 @@ mod tests {
         assert_eq!(error.in_exception(), error.to_string());
         assert_eq!(Error::new("no").in_color(), "\x1b[1;31merror\x1b[0m: no");
         assert_eq!(shown(" a\nb "), "a\\nb");
+        let long = Error::new(format!("first {} last", "µ, ".repeat(1000))).to_string();
+        assert!(long.chars().count() < 1300 && long.starts_with("error: first µ") && long.ends_with("µ,  last"));
         let hostile = Error::new("a\u{1b}[2Jb").in_file("c\n\u{202e}d").help("e\rf");
         assert_eq!(hostile.to_string(), "c\\n\\u{202e}d: a\\u{1b}[2Jb; e\\rf");
     }

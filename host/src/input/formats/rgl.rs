@@ -154,8 +154,14 @@ fn material(file: &[u8]) -> Result<Material<'_>, Error> {
     let find = |name: &str| fields.iter().find(|field| field.name == name);
     let field = |name: &str, dimensions: usize| -> Result<Field<'_>, Error> {
         let field = find(name).ok_or_else(|| fault(&format!("there is no field {name}")))?;
-        if field.shape.len() != dimensions || field.shape.contains(&0) {
-            return Err(fault(&format!("the field {name} has the shape {:?}", field.shape)));
+        let found = field.shape.len();
+        if found != dimensions {
+            return Err(fault(&format!(
+                "the field {name} has {found} dimensions, and not {dimensions}"
+            )));
+        }
+        if field.shape.contains(&0) {
+            return Err(fault(&format!("the field {name} is empty")));
         }
         Ok(field.clone())
     };
@@ -382,14 +388,16 @@ mod tests {
             let place = whole.windows(from.len()).position(|bytes| bytes == from).unwrap();
             [&whole[..place], to, &whole[place + from.len()..]].concat()
         };
+        let many_dimensions = tensor::write(&[("theta_i", vec![1; 2000], Numbers::Bytes(vec![0]))]);
         for (file, what) in [
             (replaced(b"vndf", b"vndg"), "no field vndf"),
             (replaced(b"luminance", b"luminancy"), "no field luminance"),
             (replaced(b"ndf\x02\0", b"ndf\x01\0"), ""),
+            (many_dimensions, "the field theta_i has 2000 dimensions, and not 1"),
             (whole[..whole.len() - 1].to_vec(), "not all there"),
         ] {
             let error = read(&file, "").unwrap_err();
-            assert!(error.what.contains(what), "{error}");
+            assert!(error.what.contains(what) && error.what.len() < 200, "{error}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Tensor files: named arrays of numbers behind a head that says where each begins.
 
-use crate::error::Error;
+use crate::error::{Error, shown};
 
 const MAGIC: &[u8; 12] = b"tensor_file\0";
 
@@ -113,11 +113,11 @@ pub fn fields(file: &[u8]) -> Result<Vec<Field<'_>>, Error> {
         let offset = head.size()?;
         let shape = (0..dimensions).map(|_| head.size()).collect::<Result<Vec<_>, _>>()?;
         let size = SIZES.get(kind.wrapping_sub(1));
-        let size = size.ok_or_else(|| fault(&format!("the field {name} has numbers of an unknown kind")))?;
+        let size = size.ok_or_else(|| fault(&format!("the field {} has numbers of an unknown kind", shown(&name))))?;
         let bytes = shape.iter().try_fold(*size, |bytes, &count| bytes.checked_mul(count));
         let bytes = bytes.and_then(|bytes| file.get(offset..)?.get(..bytes));
         fields.push(Field {
-            bytes: bytes.ok_or_else(|| fault(&format!("the field {name} is not all there")))?,
+            bytes: bytes.ok_or_else(|| fault(&format!("the field {} is not all there", shown(&name))))?,
             name,
             shape,
             kind: match kind {

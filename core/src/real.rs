@@ -100,7 +100,7 @@ pub trait Real:
     fn rsqrt(self) -> Self {
         Pack([self]).rsqrt().0[0]
     }
-    /// Square root, by libm; not for the inner loop.
+    /// Square root, rounded as IEEE says.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, each at most 1 ulp up to 16; beyond that within 1e-4 (`f32`) of it, and an angle beyond 1000 counts as 1000.
     fn portable_sin_cos(self) -> (Self, Self);
@@ -263,7 +263,15 @@ impl Real for f64 {
         let h = (x * (y * y)).map(|z| 1.0 - z);
         y + y * (h * (h * 0.375 + 0.5))
     }
+    // The same bits by both; in WebAssembly libm does without the instruction.
+    #[inline(always)]
     fn sqrt(self) -> Self {
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        {
+            use core::arch::wasm32::{f64x2_extract_lane, f64x2_splat, f64x2_sqrt};
+            f64x2_extract_lane::<0>(f64x2_sqrt(f64x2_splat(self)))
+        }
+        #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
         libm::sqrt(self)
     }
     // x = k pi/2 + r, with pi/2 in three parts of which the first two times k are exact; the series are those of FreeBSD's k_sin.c and k_cos.c.

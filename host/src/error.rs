@@ -158,7 +158,10 @@ fn bounded(text: &str) -> String {
         return text.to_string();
     }
     let begin = text.chars().take(HALF);
-    begin.chain(" ... ".chars()).chain(text.chars().skip(count - HALF)).collect()
+    begin
+        .chain(" ... ".chars())
+        .chain(text.chars().skip(count - HALF))
+        .collect()
 }
 
 /// Foreign text inside a message: on one line, and not too long.

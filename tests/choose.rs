@@ -6,6 +6,7 @@
 
 use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::choose::{self, SETS, Wanted, sets};
+use brdfit::analysis::joint;
 use brdfit::analysis::profile::calibrate::threshold;
 use brdfit::engine::{self, FitOptions, Material};
 use brdfit::result::words;
@@ -122,6 +123,44 @@ fn residuals_that_wander_buy_no_terms() {
         assert!(correlated + 1 >= copies, "{correlated}");
         assert!(rejected <= 5, "{rejected}");
     }
+}
+
+/// Scans fitted together are judged as one is: their terms, and the errors of what they share.
+#[test]
+fn joint_fits_count_what_wanders() {
+    let truths = [[0.05, 1.0, 0.0, 0.2, 1.5, 0.0], [0.1, 2.0, 0.0, 0.2, 1.5, 0.0]];
+    let terms = DIFFUSE | SURFACE;
+    let shared: Vec<bool> = NAMES.iter().map(|&name| name == "m").collect();
+    let candidates: Vec<_> = sets(&FitOptions::default())
+        .into_iter()
+        .map(|options| (options, shared.clone()))
+        .collect();
+    let copies = 24;
+    let (mut right, mut covered, mut independent, mut told) = (0, 0, 0, 0);
+    for copy in 0..copies {
+        let scans = [0, 1].map(|scan| wandering(&Material::paper(truths[scan]), 2 * copy + scan as u64));
+        let scans = scans.each_ref().map(|samples| &samples[..]);
+        let fits = joint::fit(&scans, &candidates).unwrap();
+        right += u64::from(fits.best().options.terms == terms);
+        let place = candidates
+            .iter()
+            .position(|(options, _)| options.terms == terms)
+            .unwrap();
+        let one = &fits.candidates[place];
+        let plain = engine::joint::fit(&scans, &shared, &one.options).unwrap();
+        assert_eq!(one.fitted.scans, plain.scans);
+        let within = |errors: &[Vec<Option<f64>>]| (one.fitted.scans[0][3] - 0.2).abs() < 2.0 * errors[0][3].unwrap();
+        covered += u64::from(within(&one.fitted.errors));
+        independent += u64::from(within(&plain.errors));
+        told += u64::from(one.misfit.is_some_and(|misfit| misfit.factor.1 > 1.5));
+    }
+    println!("{right} of {copies} right; m within 2 errors in {covered}, {independent} by independent residuals");
+    assert!(10 * right >= 9 * copies, "{right}");
+    assert!(
+        covered + 2 >= copies && independent < covered,
+        "{covered}, {independent}"
+    );
+    assert!(told + 1 >= copies, "{told}");
 }
 
 /// AICc and BIC as in Burnham and Anderson (2002), and the F test.

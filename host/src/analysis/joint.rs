@@ -1,11 +1,18 @@
 //! Several scans fitted together, with the model and terms that they support.
 
+mod correlated;
+
 use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
 use rayon::prelude::*;
 
 use super::criteria::Criteria;
+use super::misfit::process::Process;
+use super::unseen;
 use crate::engine::joint::{self, JointFit};
+use crate::engine::uncertainty::Misfit;
 use crate::engine::{FitError, FitOptions, Precision};
+use correlated::Linear;
 
 /// One candidate, fitted to all scans.
 #[derive(Clone, Debug)]
@@ -13,34 +20,111 @@ use crate::engine::{FitError, FitOptions, Precision};
 pub struct Candidate {
     /// How it was fitted.
     pub options: FitOptions,
-    /// Its fit.
+    /// Its fit; the errors are those of correlated residuals where they are.
     pub fitted: JointFit,
     /// What it is judged by.
     pub criteria: Criteria,
+    /// How the residuals of all scans are correlated along the angle; `None` where independence is not refuted.
+    pub misfit: Option<Misfit>,
 }
 
-/// Fits every candidate; each comes with which of its parameters are the same in all scans.
+/// Fits of several scans by several candidates.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Fits {
+    /// Every candidate.
+    pub candidates: Vec<Candidate>,
+    /// Place of the one of least BIC.
+    pub place: usize,
+    /// The correlation of residuals by which all are judged; `None` where it is not seen.
+    pub process: Option<Process>,
+}
+
+impl Fits {
+    /// That of least BIC.
+    pub fn best(&self) -> &Candidate {
+        &self.candidates[self.place]
+    }
+}
+
+/// Fits every candidate, of which there is one at least; each comes with which of its parameters are the same in all scans.
 ///
 /// # Errors
 /// The place of the scan that cannot be fitted, and why.
-pub fn fit(
-    scans: &[&[Sample<f64>]],
-    candidates: &[(FitOptions, Vec<bool>)],
-) -> Result<Vec<Candidate>, (usize, FitError)> {
+pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> Result<Fits, (usize, FitError)> {
     let one = |(options, shared): &(FitOptions, Vec<bool>)| {
         let fitted = joint::fit(scans, shared, options)?;
-        Ok(Candidate {
-            options: *options,
-            // A joint fit is in double whatever the options say.
-            criteria: Criteria::new(fitted.samples, fitted.parameters, fitted.cost, Precision::F64),
-            fitted,
-        })
+        let linear = Linear::of(scans, options, &fitted);
+        Ok((*options, fitted, linear))
     };
-    candidates.par_iter().map(one).collect()
+    let fitted: Result<Vec<_>, _> = candidates.par_iter().map(one).collect();
+    let fitted = fitted?;
+    let (process, costs) = costs(&fitted).unzip();
+    let costs = costs.unwrap_or_else(|| fitted.iter().map(|(_, fitted, _)| fitted.cost).collect());
+    let judged = fitted
+        .into_iter()
+        .zip(costs)
+        .map(|((options, mut fitted, linear), cost)| {
+            // A joint fit is in double whatever the options say.
+            let criteria = Criteria::new(fitted.samples, fitted.parameters, cost, Precision::F64);
+            let misfit = with_errors(&options, &mut fitted, linear);
+            Candidate {
+                options,
+                fitted,
+                criteria,
+                misfit,
+            }
+        });
+    let candidates: Vec<Candidate> = judged.collect();
+    let bic = |place: &usize| candidates[*place].criteria.bic;
+    let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
+    Ok(Fits {
+        place: place.ok_or((scans.len(), FitError::Terms(0)))?,
+        candidates,
+        process,
+    })
 }
 
-/// That of least BIC.
-pub fn best(candidates: &[Candidate]) -> Option<&Candidate> {
-    let bic = |one: &&Candidate| one.criteria.bic;
-    candidates.iter().min_by(|a, b| bic(a).total_cmp(&bic(b)))
+type Fitted = (FitOptions, JointFit, Option<Linear>);
+
+/// The costs by the correlation that the residuals of the best have, and that: as [`super::misfit::costs`] of one scan.
+fn costs(fitted: &[Fitted]) -> Option<(Process, Vec<f64>)> {
+    let linear: Option<Vec<&Linear>> = fitted.iter().map(|(_, _, linear)| linear.as_ref()).collect();
+    let linear = linear?;
+    let best = linear.iter().min_by(|a, b| a.scale.total_cmp(&b.scale))?;
+    let process = best.process()?;
+    let with_priors = linear.iter().zip(fitted);
+    let costs = with_priors.map(|(linear, (_, fitted, _))| linear.cost(process) + fitted.cost - fitted.of_samples);
+    Some((process, costs.collect()))
+}
+
+/// Puts what correlation makes of the errors in their place; none are left where the fit is exact, and of what is undetermined.
+fn with_errors(options: &FitOptions, fitted: &mut JointFit, linear: Option<Linear>) -> Option<Misfit> {
+    let degrees = fitted.samples as f64 - fitted.parameters as f64;
+    if unseen::exact(Real::sqrt(fitted.cost / degrees.max(1.0))) {
+        fitted.errors.iter_mut().flatten().for_each(|error| *error = None);
+        return None;
+    }
+    let (misfit, factors) = linear?.factors(fitted)?;
+    let parameters = options.model.parameters;
+    for (scan, factors) in factors.iter().enumerate() {
+        for (place, factor) in factors.iter().enumerate() {
+            let Some(error) = fitted.errors[scan][place] else {
+                continue;
+            };
+            let value = fitted.scans[scan][place];
+            let of_scale = match parameters[place].is_weight() {
+                true => options.instrument.scale_uncertainty * value,
+                false => 0.0,
+            };
+            let own = Real::sqrt((error * error - of_scale * of_scale).max(0.0)) * factor;
+            let size = if parameters[place].is_squared() {
+                value.max(1.0)
+            } else {
+                value
+            };
+            fitted.errors[scan][place] = (own <= size).then(|| libm::hypot(own, of_scale));
+        }
+    }
+    Some(misfit)
 }

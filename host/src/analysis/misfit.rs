@@ -9,7 +9,7 @@ mod along;
 pub mod lines;
 pub mod mixture;
 pub mod process;
-mod rows;
+pub mod rows;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
@@ -20,14 +20,15 @@ use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
 use along::Along;
+use mixture::Student;
 use process::{Node, Process, Residuals};
 
 /// ln of the likelihood must be so much above that of independence, which one in six scans with independent errors reaches; below it errors are theirs.
 ///
 /// The mean over all processes counts independence too, so that the errors of such scans hardly grow; with more evidence asked for, a wander that white noise hides would be passed over.
-const EVIDENCE: f64 = 0.5;
+pub const EVIDENCE: f64 = 0.5;
 /// It must be surer where one process stands for all, or speaks against a file's standard deviations: 4 % of scans with independent errors reach this.
-const SURE: f64 = 2.0;
+pub const SURE: f64 = 2.0;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
 pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
@@ -105,22 +106,55 @@ pub fn costs(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<(Process, Vec
     Some((process, costs?))
 }
 
-/// The uncertainty with the mean covariance of the nodes, scaled to Student's t that the nodes together come nearest to.
+/// The mean over the processes that the residuals may be of, scaled to Student's t that they together come nearest to.
+pub struct Mean {
+    /// Covariance of the fit in the coordinates of the rows.
+    pub covariance: Vec<Vec<f64>>,
+    student: Student,
+    /// Of the covariances, the mean trace.
+    size: f64,
+    length: f64,
+    part: f64,
+    variance: f64,
+}
+
+impl Mean {
+    /// Of these processes.
+    pub fn of(nodes: &[Node], degrees_of_freedom: usize) -> Mean {
+        let count = nodes.first().map_or(0, |node| node.covariance.len());
+        let mean = |of: &dyn Fn(&Node) -> f64| nodes.iter().map(|node| node.weight * of(node)).sum::<f64>();
+        let trace = |node: &Node| (0..count).map(|k| node.covariance[k][k]).sum::<f64>();
+        let size = mean(&trace);
+        let sizes: Vec<(f64, f64)> = nodes.iter().map(|node| (node.weight, trace(node) / size)).collect();
+        let student = mixture::matched(&sizes, degrees_of_freedom as f64);
+        let entry = |i: usize, j: usize| mean(&|node| node.covariance[i][j]) * student.variance;
+        Mean {
+            covariance: (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect(),
+            student,
+            size,
+            length: mean(&|node| node.process.length),
+            part: mean(&|node| node.process.part),
+            variance: mean(&|node| node.variance),
+        }
+    }
+
+    /// What is told of it, with the least and the largest factor of a standard error.
+    pub fn misfit(&self, factor: (f64, f64)) -> Misfit {
+        Misfit {
+            length: self.length,
+            part: self.part,
+            variance: self.variance,
+            factor,
+        }
+    }
+}
+
+/// The uncertainty with the mean covariance of the nodes.
 fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize], nodes: &[Node]) -> Uncertainty {
     let count = seen.len();
-    let mean = |of: &dyn Fn(&Node) -> f64| nodes.iter().map(|node| node.weight * of(node)).sum::<f64>();
-    let trace = |node: &Node| (0..count).map(|k| node.covariance[k][k]).sum::<f64>();
-    let size = mean(&trace);
-    let sizes: Vec<(f64, f64)> = nodes.iter().map(|node| (node.weight, trace(node) / size)).collect();
-    let student = mixture::matched(&sizes, known.degrees_of_freedom as f64);
-    let covariance: Vec<Vec<f64>> = (0..count)
-        .map(|i| {
-            (0..count)
-                .map(|j| mean(&|node| node.covariance[i][j]) * student.variance)
-                .collect()
-        })
-        .collect();
-    let root = process::cholesky(&covariance);
+    let mean = Mean::of(nodes, known.degrees_of_freedom);
+    let (covariance, student) = (&mean.covariance, mean.student);
+    let root = process::cholesky(covariance);
     let mut axes = known.axes.clone();
     for (i, &place) in seen.iter().enumerate() {
         axes[place] = Values::from_fn(known.places.len(), |k| {
@@ -136,7 +170,7 @@ fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize
         tails: student.variance,
     };
     // Where nothing is told of a displacement of its own, it has the factor of all together.
-    let whole = Real::sqrt(size * student.variance / count as f64).max(1.0);
+    let whole = Real::sqrt(mean.size * student.variance / count as f64).max(1.0);
     for (axis, place) in axes.iter_mut().zip(&known.places) {
         if matches!(place, Some(Place::Lower | Place::Upper)) {
             let own = along.bound(axis);
@@ -155,11 +189,6 @@ fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize
         (a.min(factor), b.max(factor))
     });
     corrected.effective = student.degrees;
-    corrected.misfit = Some(Misfit {
-        length: mean(&|node| node.process.length),
-        part: mean(&|node| node.process.part),
-        variance: mean(&|node| node.variance),
-        factor,
-    });
+    corrected.misfit = Some(mean.misfit(factor));
     corrected
 }

@@ -64,7 +64,12 @@ pub fn names(outcome: &Outcome) -> Vec<&'static str> {
 
 /// Why a fit knows none of its errors: it leaves no residuals, so that nothing tells of noise.
 pub fn is_exact(known: &Uncertainty) -> bool {
-    known.degrees_of_freedom > 0 && known.scale < EXACT
+    known.degrees_of_freedom > 0 && exact(known.scale)
+}
+
+/// Is a standard deviation of residuals of ln f but rounding?
+pub fn exact(scale: f64) -> bool {
+    scale < EXACT
 }
 
 /// Without any certainty if the fit is exact.

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
 use crate::analysis::fit::{FittedScan, fit};
-use crate::analysis::joint::{self, Candidate};
+use crate::analysis::joint::{self, Candidate, Fits};
 use crate::analysis::repeats::quantities;
 use crate::document;
 use crate::engine::joint::SCANS;
@@ -24,9 +24,9 @@ use crate::options::SearchArguments;
 use crate::output::{OutputArguments, deliver};
 use crate::page::{budget, provenance};
 use crate::parameters::parameter;
-use crate::result::json::ByName;
 use crate::result::json::provenance::provenance as of_input;
-use crate::result::repeats;
+use crate::result::json::{ByName, Correlated};
+use crate::result::{repeats, words};
 use crate::streams::Streams;
 use crate::terms::term_names;
 
@@ -97,10 +97,9 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
             Some(measurement) => input::explain(measurement, error),
             None => Error::new(format!("all scans together: {error}")).help("share more parameters, or --fix some"),
         })?;
-    let best = joint::best(&fits).ok_or_else(|| Error::new("there is no model to fit"))?;
     let text = match arguments.output.format {
-        JointFormat::Text => text(&fits, best, &measurements),
-        JointFormat::Json => json(&fits, best, &measurements),
+        JointFormat::Text => text(&fits, &measurements),
+        JointFormat::Json => json(&fits, &measurements),
         JointFormat::Html => return Err(no_page()),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
@@ -189,8 +188,13 @@ fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
     Ok(shared)
 }
 
-fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> String {
-    let Candidate { options, fitted, .. } = best;
+fn text(fits: &Fits, measurements: &[Measurement]) -> String {
+    let Candidate {
+        options,
+        fitted,
+        misfit,
+        ..
+    } = fits.best();
     let name = |k: usize| options.model.parameters[k].name;
     let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
     let names: Vec<&str> = present(true).map(name).collect();
@@ -221,19 +225,22 @@ fn text(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
         rms(fitted.separate)
     ));
     lines.push("  ± is one standard error; none where a parameter is on a bound, or undetermined: its error is larger than itself.".to_string());
-    if fits.len() > 1 {
-        lines.extend(table(fits, best));
+    if let Some(misfit) = misfit {
+        lines.push(format!("  {}", words::correlated(misfit)));
+    }
+    if fits.candidates.len() > 1 {
+        lines.extend(table(fits));
     }
     lines.join("\n") + "\n"
 }
 
 /// What the best was chosen from.
-fn table(fits: &[Candidate], best: &Candidate) -> Vec<String> {
-    let least = |of: fn(&Candidate) -> f64| fits.iter().map(of).fold(f64::INFINITY, f64::min);
+fn table(fits: &Fits) -> Vec<String> {
+    let least = |of: fn(&Candidate) -> f64| fits.candidates.iter().map(of).fold(f64::INFINITY, f64::min);
     let (aicc, bic) = (least(|one| one.criteria.aicc), least(|one| one.criteria.bic));
     let mut lines = vec!["  model                     P  rms ln f    AICc     BIC  terms".to_string()];
-    lines.extend(fits.iter().map(|one| {
-        let mark = if std::ptr::eq(one, best) { '*' } else { ' ' };
+    lines.extend(fits.candidates.iter().enumerate().map(|(place, one)| {
+        let mark = if place == fits.place { '*' } else { ' ' };
         let line = format!(
             "{mark} {:<22} {:>4}  {:>8.5} {:>7.1} {:>7.1}  {}",
             one.options.model.name,
@@ -246,10 +253,12 @@ fn table(fits: &[Candidate], best: &Candidate) -> Vec<String> {
         line.trim_end().to_string()
     }));
     lines.push("  AICc and BIC above their least; * has the least BIC.".to_string());
+    lines.extend(fits.process.map(|process| format!("  {}", words::judged(&process))));
     lines
 }
 
-fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> String {
+fn json(fits: &Fits, measurements: &[Measurement]) -> String {
+    let best = fits.best();
     let (model, fitted) = (best.options.model, &best.fitted);
     let shared: Vec<&str> = (0..fitted.shared.len())
         .filter(|&k| fitted.shared[k])
@@ -277,8 +286,8 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
             "bic": one.criteria.bic,
         })
     };
-    let candidates: Vec<Value> = fits.iter().map(candidate).collect();
-    let selection = (fits.len() > 1).then(|| json!({ "criterion": "bic", "candidates": candidates }));
+    let candidates: Vec<Value> = fits.candidates.iter().map(candidate).collect();
+    let selection = (fits.candidates.len() > 1).then(|| json!({ "criterion": "bic", "candidates": candidates }));
     let value = json!({
         "model": model.name,
         "terms": term_names(best.options.terms & model.terms),
@@ -287,6 +296,7 @@ fn json(fits: &[Candidate], best: &Candidate, measurements: &[Measurement]) -> S
         "samples": fitted.samples,
         "cost": fitted.cost,
         "cost_separate": fitted.separate,
+        "correlated": best.misfit.as_ref().map(Correlated::from),
         "scans": scans,
     });
     document::json(&value)

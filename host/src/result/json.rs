@@ -19,6 +19,7 @@ use crate::input::{LeftOut, ReadAs};
 pub use by_name::ByName;
 pub use choice::{Selection, selection};
 use provenance::{Provenance, provenance};
+pub use uncertainty::Correlated;
 use uncertainty::{AtAngle, Known, at_angle, known};
 
 #[derive(Serialize)]

@@ -9,6 +9,7 @@ use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
 use crate::engine::Outcome;
+use crate::engine::uncertainty::Misfit;
 use crate::result::words::{correlated, sentence};
 
 /// What is known of the parameters.
@@ -40,7 +41,7 @@ pub struct Known {
 
 /// The correlation of the residuals along the angle.
 #[derive(Serialize)]
-struct Correlated {
+pub struct Correlated {
     /// Where it falls to 1/e.
     over_deg: f64,
     /// Part of the variance of a residual.
@@ -48,6 +49,17 @@ struct Correlated {
     /// Errors over those of independent residuals, least and largest.
     factor: [f64; 2],
     sentence: String,
+}
+
+impl From<&Misfit> for Correlated {
+    fn from(misfit: &Misfit) -> Self {
+        Correlated {
+            over_deg: misfit.length.to_degrees(),
+            part: misfit.part,
+            factor: misfit.factor.into(),
+            sentence: correlated(misfit),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -112,12 +124,7 @@ pub fn known(outcome: &Outcome, derived: &[Derived]) -> Known {
         degrees_of_freedom: known.degrees_of_freedom,
         effective_degrees_of_freedom: known.effective,
         coverage_factor_95: coverage_factor(known),
-        correlated: known.misfit.as_ref().map(|misfit| Correlated {
-            over_deg: misfit.length.to_degrees(),
-            part: misfit.part,
-            factor: misfit.factor.into(),
-            sentence: correlated(misfit),
-        }),
+        correlated: known.misfit.as_ref().map(Correlated::from),
         condition: known.condition,
         stderr: ByName::new(model, |k| {
             (has(k, Place::Inside) && known.stderr[k].is_finite()).then_some(known.stderr[k])

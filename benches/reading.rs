@@ -2,7 +2,8 @@
 //!
 //! The time is that of the thread, so that other work on the machine counts little.
 //!
-//! `cargo bench --bench reading`, or as a table `cargo bench --bench reading -- --table > benches/results/reading.md`
+//! `cargo bench --bench reading`, or as a table `cargo bench --bench reading -- --table > benches/results/reading.md`;
+//! `-- --table wavelengths` has the formats of such a name only.
 
 use std::fmt::Write;
 use std::hint::black_box;
@@ -305,7 +306,7 @@ fn reading(criterion: &mut Criterion<ThreadTime>) {
 }
 
 /// The least of many times at each size: what disturbs makes them longer only.
-fn print_table() {
+fn print_table(wanted: &str) {
     const TIMES: usize = 15;
     println!("# Reading\n");
     println!("Files in memory, read on one thread to samples; the least thread time of {TIMES} readings.");
@@ -316,7 +317,7 @@ fn print_table() {
     );
     println!("| format | MB | MB/s | MB | MB/s | time a byte |");
     println!("|---|--:|--:|--:|--:|--:|");
-    for (name, file) in FILES {
+    for (name, file) in FILES.into_iter().filter(|(name, _)| name.contains(wanted)) {
         let [small, large] = [ROWS, 4 * ROWS].map(|rows| {
             let bytes = file(rows);
             let times = (0..TIMES).map(|_| {
@@ -345,8 +346,10 @@ criterion_group! {
 }
 
 fn main() {
-    if std::env::args().any(|argument| argument == "--table") {
-        return print_table();
+    let mut arguments = std::env::args();
+    if arguments.any(|argument| argument == "--table") {
+        let wanted = arguments.find(|argument| !argument.starts_with('-'));
+        return print_table(&wanted.unwrap_or_default());
     }
     benches();
     Criterion::default().configure_from_args().final_summary();

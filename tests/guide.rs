@@ -87,6 +87,74 @@ fn every_command_runs() {
     assert!(ran >= 20);
 }
 
+/// The last command of a page's shell block, and the text that the page says it prints.
+fn samples(page: &str) -> Vec<(String, String)> {
+    let mut command = None;
+    let mut found = Vec::new();
+    for (k, block) in page.split("```").enumerate().filter(|(k, _)| k % 2 == 1) {
+        match block.split_once('\n') {
+            Some(("sh", _)) => command = commands(&format!("```{block}```")).pop(),
+            Some(("text", text)) => {
+                let command = command
+                    .clone()
+                    .unwrap_or_else(|| panic!("block {k}: no command prints this:\n{text}"));
+                found.push((command, text.to_string()));
+            }
+            _ => (),
+        }
+    }
+    found
+}
+
+/// A line without the seconds in it, which differ from run to run.
+fn timeless(line: &str) -> String {
+    let words: Vec<&str> = line.trim_end().split(' ').collect();
+    let is_second = |k: usize| {
+        words
+            .get(k + 1)
+            .is_some_and(|next| next.trim_end_matches([')', ',', ';']) == "s")
+    };
+    let each = words.iter().enumerate();
+    let each = each.map(|(k, word)| {
+        if is_second(k) {
+            word.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.')
+        } else {
+            word
+        }
+    });
+    each.collect::<Vec<_>>().join(" ")
+}
+
+/// What README and guide say that their commands print, to the last digit; JSON has a test of its own.
+#[test]
+fn every_sample_is_what_the_program_prints() {
+    std::env::set_current_dir(ROOT).unwrap();
+    let mut compared = 0;
+    for (page, text) in pages() {
+        for (command, sample) in samples(&text)
+            .into_iter()
+            .filter(|(_, sample)| !sample.starts_with('{'))
+        {
+            let words = shlex::split(&command).unwrap_or_else(|| panic!("{page}: {command}"));
+            let arguments: Vec<&str> = words.iter().map(String::as_str).collect();
+            let arguments = match &arguments[..] {
+                ["cargo", "run", "--release", "--", arguments @ ..] | ["brdfit", arguments @ ..] => arguments,
+                _ => panic!("{page}: '{command}' is not a command of the program"),
+            };
+            let ran = program::brdfit(arguments, b"");
+            assert_eq!(ran.code, 0, "{page}: {command}\n{}", ran.errors);
+            let [said, printed] =
+                [&sample, &ran.output].map(|text| text.lines().map(timeless).collect::<Vec<_>>().join("\n"));
+            assert!(
+                printed.contains(&said),
+                "{page}: '{command}' does not print\n{said}\nbut\n{printed}"
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared >= 2, "{compared} samples");
+}
+
 /// Between its dots the JSON of the guide stands in what the program prints, piece by piece.
 #[test]
 fn json_of_the_guide_is_what_the_program_prints() {

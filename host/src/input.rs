@@ -49,7 +49,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::engine::FitError;
-use crate::error::{Error, ErrorKind};
+use crate::error::{Error, ErrorKind, shown};
 use crate::plain::some_of;
 pub use about::About;
 pub use bytes::STDIN;
@@ -157,7 +157,10 @@ fn bytes_of(path: &Path, stdin: &mut dyn Read) -> Result<Vec<u8>, Error> {
 pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Result<Measurement, Error> {
     let mut scans = read(&[path.to_path_buf()], options, stdin)?;
     if scans.len() > 1 {
-        let names: Vec<&str> = scans.iter().filter_map(|scan| scan.name.as_deref()).collect();
+        let names: Vec<String> = scans
+            .iter()
+            .filter_map(|scan| scan.name.as_deref().map(shown))
+            .collect();
         return Err(
             Error::new(format!("there are {} scans: {}", scans.len(), some_of(&names)))
                 .in_file(path.display().to_string())

@@ -1,5 +1,7 @@
 //! Columns by their names, and what two columns together mean.
 
+use std::fs;
+
 use super::{assert_f02, assert_is, case, fit, fits, folder, parameter, text_of};
 use brdfit_suite::program::{self, fail, write};
 
@@ -183,4 +185,229 @@ fn the_mean_of_polarisations() {
     let file = write(&folder, "short.csv", short);
     let message = fail(&["fit", &file, "--polarisation", "mean"]);
     assert!(message.contains("only s polarisation"), "{message}");
+}
+
+/// Rows of so many wavelengths in two polarisations at three angles, and those of each scan are to be found again.
+fn many_wavelengths(order: impl Fn(u32) -> [u32; 3]) -> String {
+    let mut text = String::from("wavelength_nm,polarisation,theta_i,theta_s,brdf\n");
+    for row in 0..3 * 2 * MANY {
+        let [k, polarisation, angle] = order(row);
+        // One in seven is written in another way, and is the same wavelength.
+        let wavelength = if row % 7 == 0 {
+            format!("{}.50", 400 + k)
+        } else {
+            format!("{}.5", 400 + k)
+        };
+        let (name, theta_s) = (["s", "p"][polarisation as usize], [-40, -20, 30][angle as usize]);
+        text += &format!(
+            "{wavelength},{name},30,{theta_s},{}.{angle}\n",
+            1 + k + MANY * polarisation
+        );
+    }
+    text
+}
+
+/// So many that each must have its own place.
+const MANY: u32 = 1000;
+
+#[test]
+fn thousands_of_scans_keep_their_rows_in_any_order() {
+    let folder = folder();
+    let read = |name: &str, text: &str, more: &[&str]| -> Vec<Vec<String>> {
+        let path = folder.path().join(name);
+        fs::write(&path, text).expect("a file");
+        let path = path.to_str().expect("a path in UTF-8");
+        let ran = program::brdfit(&[&["inspect", path, "--output", "-"], more].concat(), b"");
+        assert_eq!(ran.code, 0, "{name}: {}", ran.errors);
+        let rows = ran.output.lines().filter(|line| !line.starts_with('#')).skip(1);
+        rows.map(|row| row.split(',').map(String::from).collect()).collect()
+    };
+    let sweeps = many_wavelengths(|row| [row / 6, row / 3 % 2, row % 3]);
+    let by_angle = many_wavelengths(|row| [row % MANY, row / MANY % 2, row / (2 * MANY)]);
+    let mixed = many_wavelengths(|row| {
+        let row = row * 7919 % (6 * MANY);
+        [row % MANY, row / MANY % 2, row / (2 * MANY)]
+    });
+    let sorted = |mut rows: Vec<Vec<String>>| {
+        rows.sort();
+        rows
+    };
+    let first = read("sweeps.csv", &sweeps, &[]);
+    assert_eq!(first.len(), 6 * MANY as usize);
+    for (k, scan) in first.chunks(3).enumerate() {
+        let (k, polarisation) = (k as u32 / 2, k as u32 % 2);
+        let name = format!("{}.5 nm {}", 400 + k, ["s", "p"][polarisation as usize]);
+        for (angle, row) in scan.iter().enumerate() {
+            let value = format!("{}.{angle}", 1 + k + MANY * polarisation);
+            assert_eq!(row[0], name);
+            assert_eq!(
+                row[3].parse::<f64>().expect("a number"),
+                value.parse::<f64>().expect("a number")
+            );
+        }
+    }
+    let first = sorted(first);
+    assert_eq!(sorted(read("by_angle.csv", &by_angle, &[])), first);
+    assert_eq!(sorted(read("mixed.csv", &mixed, &[])), first);
+    let means = sorted(read("by_angle.csv", &by_angle, &["--polarisation", "mean"]));
+    assert_eq!(means, sorted(read("sweeps.csv", &sweeps, &["--polarisation", "mean"])));
+    assert_eq!(means.len(), 3 * MANY as usize);
+}
+
+#[test]
+fn a_name_that_is_not_there_does_not_list_thousands() {
+    let folder = folder();
+    let path = folder.path().join("many.csv");
+    fs::write(&path, many_wavelengths(|row| [row / 6, row / 3 % 2, row % 3])).expect("a file");
+    let path = path.to_str().expect("a path in UTF-8");
+    let ran = program::brdfit(&["fit", path, "--column", "399 nm"], b"");
+    assert_eq!(ran.code, 2, "{}", ran.errors);
+    assert!(
+        ran.errors.contains("and 1990 more") && ran.errors.len() < 1000,
+        "{}",
+        ran.errors
+    );
+    // A name may be as long as a cell.
+    let long = "x".repeat(5000);
+    fs::write(
+        path,
+        format!("sample,theta_i,theta_s,brdf\n{long}1,30,20,1\n{long}2,30,20,1\n"),
+    )
+    .expect("a file");
+    for more in [&["--column", "y"][..], &["--sample", "y"]] {
+        let ran = program::brdfit(&[&["inspect", path][..], more].concat(), b"");
+        assert_eq!(ran.code, 2, "{}", ran.errors);
+        assert!(ran.errors.len() < 1000, "{} bytes", ran.errors.len());
+    }
+}
+
+#[test]
+fn remarks_that_say_other_than_the_columns_are_named() {
+    let folder = folder();
+    let read = |remark: &str, table: &str| {
+        let path = folder.path().join("scan.csv");
+        fs::write(&path, format!("{remark}\n{table}")).expect("a file");
+        let path = path.to_str().expect("a path in UTF-8").to_string();
+        let ran = program::brdfit(&["inspect", &path], b"");
+        assert_eq!(ran.code, 0, "{remark}: {}", ran.errors);
+        let fit = program::brdfit(&["fit", "--fix", "m=0.3", "--starts", "1", &path], b"");
+        let said = ran.output.contains("a remark");
+        assert_eq!(fit.errors.contains("a remark"), said, "{remark}: {}", fit.errors);
+        ran.output
+            .lines()
+            .filter(|line| line.contains("a remark"))
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    let rows = |theta_i: i32, more: &str| -> String {
+        let each = (-4..=4).map(|k| format!("{more}{theta_i},{},{}\n", 15 * k, if k == 2 { 0.5 } else { 0.1 }));
+        each.collect()
+    };
+    let table = format!("theta_i,theta_s,brdf\n{}{}", rows(20, ""), rows(45, ""));
+    for (remark, says) in [
+        (
+            "# theta_i = 30",
+            "theta_i is 30 degrees, and the column 'theta_i' has 20 to 45",
+        ),
+        (
+            "Incident Angle: 20",
+            "theta_i is 20 degrees, and the column 'theta_i' has 20 to 45",
+        ),
+        ("AOI [rad]: 0.2", "theta_i is 11.45"),
+        ("# phi_s = 45 deg", "names an azimuth of 45 degrees"),
+    ] {
+        let said = read(remark, &table);
+        assert!(matches!(&said[..], [line] if line.contains(says)), "{remark}: {said:?}");
+    }
+    let spectral = format!(
+        "wavelength_nm,theta_i,theta_s,brdf\n{}{}",
+        rows(20, "550,"),
+        rows(20, "633,")
+    );
+    let said = read("# wavelength = 550 nm", &spectral);
+    assert!(
+        said.len() == 2 && said[0].contains("the wavelength is 550 nm"),
+        "{said:?}"
+    );
+    // What agrees, or says nothing of these, is no news.
+    let by_block = format!(
+        "theta_i,theta_s,brdf\n# theta_i = 20\n{}# theta_i = 45\n{}",
+        rows(20, ""),
+        rows(45, "")
+    );
+    let one = format!("theta_i,theta_s,brdf\n{}", rows(20, ""));
+    for (remark, table) in [
+        ("# made up", &table),
+        ("# phi_s = 180 deg", &table),
+        ("# made up", &by_block),
+        ("# theta_i = 20 deg", &one),
+        ("# wavelength = 550 nm", &one),
+    ] {
+        assert_eq!(read(remark, table), [""; 0], "{remark}");
+    }
+}
+
+#[test]
+fn units_stand_in_the_cells_of_angles() {
+    let folder = folder();
+    let path = folder.path().join("scan.csv");
+    let read = |head: &str, row: &dyn Fn(f64, f64) -> String| {
+        let rows: String = (-4..=4)
+            .map(|k| row(f64::from(15 * k), if k == 2 { 0.5 } else { 0.1 }))
+            .collect();
+        fs::write(&path, format!("{head}\n{rows}")).expect("a file");
+        program::brdfit(
+            &["inspect", path.to_str().expect("a path in UTF-8"), "--output", "-"],
+            b"",
+        )
+    };
+    let right = read("theta_i,theta_s,brdf", &|theta_s, f| format!("20,{theta_s},{f}\n"));
+    assert_eq!(right.code, 0, "{}", right.errors);
+    let rows = |text: &str| {
+        text.lines()
+            .filter(|line| !line.starts_with('#'))
+            .map(String::from)
+            .collect::<Vec<_>>()
+    };
+    for ran in [
+        read("theta_i,theta_s,brdf", &|theta_s, f| format!("20°,{theta_s}°,{f}\n")),
+        read("theta_i;theta_s;brdf", &|theta_s, f| {
+            format!("20 deg;{theta_s} deg;{f}\n").replace('.', ",")
+        }),
+        read("Einfallswinkel;Streuwinkel;BRDF", &|theta_s, f| {
+            format!("20 °;{theta_s:.1} °;{f}\n").replace('.', ",")
+        }),
+        read("angle d'incidence,angle de diffusion,BRDF", &|theta_s, f| {
+            format!("20,{theta_s},{f}\n")
+        }),
+    ] {
+        assert_eq!(ran.code, 0, "{}", ran.errors);
+        assert_eq!(rows(&ran.output), rows(&right.output));
+    }
+    // Another unit than the column's is no number, and a value has its unit in its name.
+    for (ran, says) in [
+        (
+            read("theta_i,theta_s,brdf", &|theta_s, f| format!("0.3 rad,{theta_s},{f}\n")),
+            "'0.3 rad' is not a number",
+        ),
+        (
+            read("theta_i,theta_s,brf", &|theta_s, f| format!("20,{theta_s},{f}%\n")),
+            "write the unit in the name of the column",
+        ),
+        (
+            read("theta_i,theta_s,brdf", &|theta_s, f| {
+                format!("20,{theta_s},\"1,000.{}\"\n", 10.0 * f)
+            }),
+            "without marks between their thousands",
+        ),
+        (
+            read("theta_i;theta_s;brdf", &|theta_s, f| {
+                format!("20;{theta_s};1'000.{}\n", 10.0 * f)
+            }),
+            "without marks between their thousands",
+        ),
+    ] {
+        assert_eq!((ran.code, ran.output.as_str()), (2, ""));
+        assert!(ran.errors.contains(says), "{}", ran.errors);
+    }
 }

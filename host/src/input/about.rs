@@ -8,6 +8,7 @@ use super::columns::Polar;
 use super::kind::Kind;
 use super::options::ReadOptions;
 use super::source::Source;
+use crate::error::shown;
 use crate::plain::some_of;
 
 /// What a reader understood, beside the numbers; the scans of a file share what may be long, for there may be thousands of them.
@@ -47,7 +48,7 @@ pub struct About {
 impl About {
     /// The columns that are not used, for people; of very many only the first.
     pub fn unused(&self) -> String {
-        some_of(&self.unused)
+        some_of(&self.unused.iter().map(|name| shown(name)).collect::<Vec<_>>())
     }
 }
 

@@ -30,6 +30,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     };
     let divisor = scan.about.divisor;
     let mut masked = Vec::new();
+    let mut names = scan.names;
     let count = scan.rows.len();
     let (mut samples, mut lines) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let (mut counts, mut faults) = (scan.left_out, Faults::default());
@@ -89,7 +90,10 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     }
     Ok(Measurement {
         file: file.to_string(),
-        name: (!scan.names.is_empty()).then(|| scan.names.join(" ")),
+        name: match names.len() {
+            0 | 1 => names.pop(),
+            _ => Some(names.join(" ")),
+        },
         read_as: ReadAs {
             weighted: samples.iter().any(|sample| sample.weight != samples[0].weight),
             ..read_as

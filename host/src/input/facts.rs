@@ -13,6 +13,8 @@ use crate::plain::some_of;
 pub struct Facts {
     /// Line and angle of incidence in degrees, as often as it is named.
     pub theta_i: Vec<(u64, f64)>,
+    /// Line and azimuth in degrees, of whatever direction.
+    pub azimuths: Vec<(u64, f64)>,
     /// Wavelength, nanometres.
     pub wavelength: Option<f64>,
     /// Polarisation.
@@ -45,13 +47,9 @@ impl Facts {
             self.scan = Some(value.to_string());
         }
         match role::role(&head) {
-            Role::ThetaI => {
-                let Some((number, unit)) = quantity(value) else { return };
-                match head.unit.or(unit) {
-                    None | Some(Unit::Deg) => self.theta_i.push((line, number)),
-                    Some(Unit::Rad) => self.theta_i.push((line, number.to_degrees())),
-                    Some(_) => {}
-                }
+            Role::ThetaI => self.theta_i.extend(degrees(&head, value).map(|angle| (line, angle))),
+            Role::PhiI | Role::PhiS | Role::DeltaPhi | Role::Phi => {
+                self.azimuths.extend(degrees(&head, value).map(|angle| (line, angle)));
             }
             Role::Wavelength => {
                 let named =
@@ -121,6 +119,16 @@ fn pairs(remark: &str) -> Vec<(&str, &str)> {
         .map(|(key, value)| (key.trim(), value.trim_matches(['\t', ';', ',', ' '])))
         .into_iter()
         .collect()
+}
+
+/// The angle that a remark gives, degrees, unless it is in another unit than these and radians.
+fn degrees(head: &Head, value: &str) -> Option<f64> {
+    let (number, unit) = quantity(value)?;
+    match head.unit.or(unit) {
+        None | Some(Unit::Deg) => Some(number),
+        Some(Unit::Rad) => Some(number.to_degrees()),
+        Some(_) => None,
+    }
 }
 
 /// The number at the beginning of a value, and its unit.

@@ -7,6 +7,7 @@ use super::units::{Angles, Quantity};
 use super::wavelength;
 use super::weight::Deviation;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// A scan as it stands in the file; nothing is checked or converted.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,8 +102,8 @@ pub fn select(scans: Vec<RawScan>, wanted: &[String]) -> Result<Vec<RawScan>, Er
         scan.names.iter().any(named) || named(&scan.names.join(" "))
     };
     if let Some(missing) = wanted.iter().find(|name| !scans.iter().any(|scan| is(scan, name))) {
-        let names: Vec<String> = scans.iter().map(|scan| scan.names.join(" ")).collect();
-        let names = names.join(" | ");
+        let names: Vec<String> = scans.iter().map(|scan| shown(&scan.names.join(" "))).collect();
+        let names = some_of(&names);
         let there = if names.is_empty() { "one without a name" } else { &names };
         return Err(Error::new(format!("there is no scan '{}'", shown(missing)))
             .help(format!("--column takes names of the file's scans: {there}")));

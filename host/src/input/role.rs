@@ -100,7 +100,7 @@ enum Word {
 }
 
 /// Words that names of angles are made of; those of one letter count only beside the name of an angle.
-const WORDS: [(&str, Word); 98] = [
+const WORDS: [(&str, Word); 115] = [
     ("theta", Word::Polar),
     ("th", Word::Polar),
     ("zenith", Word::Polar),
@@ -193,6 +193,24 @@ const WORDS: [(&str, Word); 98] = [
     ("minus", Word::Difference),
     ("difference", Word::Difference),
     ("diff", Word::Difference),
+    // German and French.
+    ("winkel", Word::Angle),
+    ("einfalls", Word::Incidence),
+    ("einstrahl", Word::Incidence),
+    ("beleuchtungs", Word::Incidence),
+    ("streu", Word::Scattering),
+    ("ausfalls", Word::Scattering),
+    ("reflexions", Word::Scattering),
+    ("beobachtungs", Word::Scattering),
+    ("detektor", Word::Scattering),
+    ("dincidence", Word::Incidence),
+    ("déclairage", Word::Incidence),
+    ("declairage", Word::Incidence),
+    ("dediffusion", Word::Scattering),
+    ("deréflexion", Word::Scattering),
+    ("dereflexion", Word::Scattering),
+    ("dobservation", Word::Scattering),
+    ("devue", Word::Scattering),
     ("of", Word::Filler),
     ("the", Word::Filler),
     ("to", Word::Filler),
@@ -234,13 +252,14 @@ fn word(plain: &str) -> Option<Role> {
         "saa" | "iaa" => Role::PhiI,
         "vaa" | "oaa" => Role::PhiS,
         "raa" | "dphi" | "dazimuth" | "dazi" | "daz" => Role::DeltaPhi,
-        "wavelength" | "wavelengthm" | "wavelengthi" | "wl" | "wvl" | "wavelen" | "lambda" | "lambdam" | "lam"
-        | "wave" | "wavenumber" | "laserwavelength" | "nm" | "um" | "µm" | "μm" => Role::Wavelength,
+        "wavelength" | "wellenlänge" | "wellenlaenge" | "longueurdonde" | "wavelengthm" | "wavelengthi" | "wl"
+        | "wvl" | "wavelen" | "lambda" | "lambdam" | "lam" | "wave" | "wavenumber" | "laserwavelength" | "nm"
+        | "um" | "µm" | "μm" => Role::Wavelength,
         "polarisation" | "polarization" | "pol" | "polstate" | "polarisationstate" | "polarizationstate" => {
             Role::Polarisation
         }
-        "sample" | "samplename" | "sampleid" | "sampleno" | "samplenumber" | "specimen" | "specimenid" | "material"
-        | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
+        "sample" | "échantillon" | "echantillon" | "samplename" | "sampleid" | "sampleno" | "samplenumber"
+        | "specimen" | "specimenid" | "material" | "coupon" | "scan" | "scanname" | "target" => Role::Sample,
         "unit" | "units" => Role::Unit,
         "sigmaln" => Role::SigmaLn,
         "ownabsolutesigma" => Role::OwnAbsolute,
@@ -386,17 +405,19 @@ mod tests {
         all(
             Role::ThetaI,
             "theta_i, theta_in, thetaIn, theta_inc, theta_incident, incident angle, Incidence_angle, angle of incidence, AOI, \
-             theta_source, illumination zenith angle, solar_zenith, SZA, incidence (deg), theta_0, thetai_rad, Incident_angle",
+             theta_source, illumination zenith angle, solar_zenith, SZA, incidence (deg), theta_0, thetai_rad, Incident_angle, \
+             Einfallswinkel, Einfallswinkel [°], Beleuchtungswinkel, angle d'incidence, Angle d'éclairage",
         );
         all(
             Role::ThetaS,
             "theta_s, theta_r, theta_o, theta_out, theta_sc, theta_scatter, scatter angle, scattering angle, theta_v, \
-             viewing angle, detector angle, Measure_angle, view zenith, VZA, theta_refl, angle of reflection, theta_obs",
+             viewing angle, detector angle, Measure_angle, view zenith, VZA, theta_refl, angle of reflection, theta_obs, \
+             Streuwinkel, Beobachtungswinkel (°), Ausfallswinkel, angle de diffusion, Angle d'observation, angle de réflexion",
         );
         all(Role::Theta, "theta, angle, zenith [deg], polar angle");
         all(
             Role::PhiI,
-            "phi_i, phi_in, phi_inc, azimuth_i, incident azimuth, SAA, phi_source, incidence azimuth angle",
+            "phi_i, Einfallsazimut, azimut d'incidence, phi_in, phi_inc, azimuth_i, incident azimuth, SAA, phi_source, incidence azimuth angle",
         );
         all(
             Role::PhiS,

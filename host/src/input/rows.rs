@@ -2,6 +2,7 @@
 
 use csv::StringRecord;
 
+use super::unit::Unit;
 use crate::error::{Error, shown};
 
 /// How a table writes fractions.
@@ -199,7 +200,15 @@ pub fn number_in(cells: &[&str], column: usize, decimal: &mut Decimal) -> Result
         return Ok(f64::NAN);
     }
     Err({
+        let mut between = cell.bytes().filter(|byte| b".,'".contains(byte));
         let help = match decimal {
+            // `1,234.5` and the like.
+            _ if between.any(|mark| cell.bytes().any(|other| b".,".contains(&other) && other != mark)) => {
+                "write numbers without marks between their thousands"
+            }
+            _ if Unit::at_end(cell).1.is_some() => {
+                "write the unit in the name of the column, as in 'brf (%)', and numbers alone in its cells"
+            }
             Decimal::Comma if cell.contains('.') => "other numbers have a decimal comma; write all in one way",
             _ if cell.contains(',') => "write numbers with a decimal point",
             _ => "write a number, or leave the cell empty and use --drop-invalid if there is no value",

@@ -2,7 +2,9 @@
 
 mod about;
 mod means;
+mod remarks;
 mod sorter;
+mod texts;
 mod unused;
 
 use super::columns::Value;
@@ -34,9 +36,10 @@ pub const FORMAT: Format = Format {
 pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let sheet = Sheet::find(text, options)?;
     let columns = wide::find(sheet.heads.clone(), options).map_err(|error| error.at_line(sheet.line))?;
+    let remarks = remarks_of(text, &sheet);
     let theta_i = match columns.theta_i {
-        Some(_) => None,
-        None => theta_i_of_remarks(text, sheet.first_line, options)?,
+        None if options.theta_i.is_empty() => remarks.one_theta_i()?,
+        _ => None,
     };
     if let (Some(degrees), true) = (theta_i, columns.values.iter().any(Value::gives_theta_i)) {
         return Err(Error::new(format!(
@@ -48,15 +51,11 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     }
     let mut sorter = Sorter::new(&columns, &sheet.facts, theta_i, options);
     sheet.for_each(|line, cells| sorter.row(line, cells))?;
-    if sorter.scans.is_empty() {
+    let (unused, unit) = (std::mem::take(&mut sorter.unused), sorter.unit.take());
+    let mut scans = sorter.finish();
+    if scans.is_empty() {
         return Err(Error::new("there are no rows below the header").help("give one row a sample"));
     }
-    let Sorter {
-        mut scans,
-        unused,
-        unit,
-        ..
-    } = sorter;
     for seen in &unused {
         seen.refuse().map_err(|error| error.at_line(sheet.line))?;
     }
@@ -79,6 +78,11 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             repeats::refuse(&scan.raw, &sheet, &columns, &tells_apart)?;
         }
     }
+    let not_taken = remarks::not_taken(&remarks, &columns, &scans, options);
+    for scan in &mut scans {
+        scan.raw.about.notes.extend(not_taken.iter().cloned());
+        scan.raw.about.doubts.extend(not_taken.iter().cloned());
+    }
     if options.polarisation == Polarisation::Mean {
         scans = means::means(scans)?;
     }
@@ -97,13 +101,15 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     Ok(scans.into_iter().map(finish).collect())
 }
 
-/// The angle of incidence in the remarks of the whole file, degrees: one between rows would be of those below.
-fn theta_i_of_remarks(text: &str, first_line: u64, options: &ReadOptions) -> Result<Option<f64>, Error> {
-    if !options.theta_i.is_empty() {
-        return Ok(None);
+/// What the remarks of the whole file say: one between rows would be of those below.
+fn remarks_of(text: &str, sheet: &Sheet) -> Facts {
+    // Most files have none between their rows, and many rows.
+    if sheet.facts.own || memchr::memchr(b'#', sheet.rows.as_bytes()).is_none() {
+        return sheet.facts.clone();
     }
-    let all = rows::lines(text).filter(|&(number, _, line)| number < first_line || line.trim_start().starts_with('#'));
-    Facts::of(all.map(|(number, _, line)| (number, line))).one_theta_i()
+    let is_one = |number: u64, line: &str| number < sheet.first_line || line.trim_start().starts_with('#');
+    let all = rows::lines(text).filter(|&(number, _, line)| is_one(number, line));
+    Facts::of(all.map(|(number, _, line)| (number, line)))
 }
 
 #[cfg(test)]

@@ -15,8 +15,8 @@ use crate::engine::Material;
 const OTHERS: usize = 24;
 /// How far a thin line may be from the model, pixels.
 const OTHERS_TRUE_TO: f64 = 0.25;
-/// Width of a letter of the legend, pixels.
-const LETTER: f64 = 6.7;
+/// Width of a letter of the legend, pixels; the fonts that a browser may take are up to 7.9 wide, and the gaps have room for that.
+const LETTER: f64 = 7.2;
 /// Height of the title and the legend, pixels.
 const TOP: f64 = 80.0;
 

@@ -1,5 +1,7 @@
 //! The means of s and p polarisation of a table's scans.
 
+use std::collections::HashMap;
+
 use super::sorter::Scan;
 use crate::error::Error;
 use crate::input::head::Head;
@@ -27,15 +29,13 @@ pub fn means(scans: Vec<Scan>) -> Result<Vec<Scan>, Error> {
             .help("choose two with --column, or fit all apart (--polarisation apart)")
     };
     let mut found: Vec<(Vec<String>, Option<Scan>, Option<Scan>)> = Vec::new();
+    let mut places = HashMap::new();
     for scan in scans {
         let names = other_names(&scan);
-        let place = match found.iter().position(|(known, ..)| *known == names) {
-            Some(place) => place,
-            None => {
-                found.push((names, None, None));
-                found.len() - 1
-            }
-        };
+        let place = *places.entry(names.clone()).or_insert(found.len());
+        if place == found.len() {
+            found.push((names, None, None));
+        }
         let (_, s, p) = &mut found[place];
         let slot = match scan.polarisation.as_deref() {
             Some("s") => s,

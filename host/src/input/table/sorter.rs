@@ -1,9 +1,9 @@
 //! Sorts the rows of a table into scans.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::about;
+use super::texts::Texts;
 use super::unused::Seen;
 use crate::error::{Error, shown};
 use crate::input::about::About;
@@ -15,7 +15,7 @@ use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::role::Role;
 use crate::input::rows::{self, Decimal};
 use crate::input::unit::Unit;
-use crate::input::units::WavelengthUnit;
+use crate::input::units::{Angles, WavelengthUnit};
 use crate::input::weight::Deviation;
 use crate::input::{channel, polarisation, wavelength};
 
@@ -42,13 +42,17 @@ pub struct Sorter<'a> {
     width: usize,
     /// What the scans of a group are before their first row.
     empty: Vec<Empty>,
-    /// The scans, group by group.
-    pub scans: Vec<Scan>,
-    /// Groups by what stands in the rows, and by what that means.
-    by_text: HashMap<String, usize>,
-    by_name: HashMap<String, usize>,
-    /// The text of the row before, and its group.
-    last: (String, Option<usize>),
+    /// The scans, group by group, without their rows.
+    scans: Vec<Scan>,
+    /// The rows of all scans, and the scan of each if there are several: one buffer costs less than thousands.
+    rows: Vec<Row>,
+    of_scan: Vec<u32>,
+    /// What stands in the rows, the group of each such text, and which the row before has.
+    texts: Texts,
+    of_text: Vec<usize>,
+    last: usize,
+    /// The names of the groups, which is what those texts mean.
+    names: Texts,
     key: String,
     /// The columns that are not used.
     pub unused: Vec<Seen>,
@@ -80,9 +84,12 @@ impl<'a> Sorter<'a> {
             width,
             empty: empty.collect(),
             scans: Vec::new(),
-            by_text: HashMap::new(),
-            by_name: HashMap::new(),
-            last: (String::new(), None),
+            rows: Vec::new(),
+            of_scan: Vec::new(),
+            texts: Texts::default(),
+            of_text: Vec::new(),
+            last: 0,
+            names: Texts::default(),
             key: String::new(),
             unused: columns.unused.iter().map(seen).collect(),
             unit: None,
@@ -103,20 +110,20 @@ impl<'a> Sorter<'a> {
         let group = self.group(cells)?;
         let columns = self.columns;
         let sigma_ln = columns.sigma_ln.map(|column| self.number(cells, column)).transpose()?;
-        let angles = Angles {
+        let angles = Directions {
             theta_i: match columns.theta_i {
-                Some(column) => self.number(cells, column)?,
+                Some(column) => self.angle(cells, column)?,
                 None => f64::NAN,
             },
             theta_s: match columns.theta_s {
-                Some(column) => self.number(cells, column)?,
+                Some(column) => self.angle(cells, column)?,
                 None => f64::NAN,
             },
             delta_phi: match columns.azimuth {
                 None => None,
-                Some(Azimuth::Difference(column)) => Some(self.number(cells, column)?),
-                Some(Azimuth::Of(phi_s, None)) => Some(self.number(cells, phi_s)?),
-                Some(Azimuth::Of(phi_s, Some(phi_i))) => Some(self.number(cells, phi_s)? - self.number(cells, phi_i)?),
+                Some(Azimuth::Difference(column)) => Some(self.angle(cells, column)?),
+                Some(Azimuth::Of(phi_s, None)) => Some(self.angle(cells, phi_s)?),
+                Some(Azimuth::Of(phi_s, Some(phi_i))) => Some(self.angle(cells, phi_s)? - self.angle(cells, phi_i)?),
             },
         };
         for value in &columns.values {
@@ -129,19 +136,64 @@ impl<'a> Sorter<'a> {
                 weight: self.weight(cells, value)?,
                 line,
             };
-            let raw = &mut self.scans[group * self.width + value.scan].raw;
-            raw.about.sigma_ln = sigma_ln;
-            // Thousands of scans may have one row each.
-            if raw.rows.len() == raw.rows.capacity() {
-                raw.rows.reserve_exact(raw.rows.len().max(1));
+            let scan = group * self.width + value.scan;
+            if sigma_ln.is_some() {
+                self.scans[scan].raw.about.sigma_ln = sigma_ln;
             }
-            raw.rows.push(row);
+            if self.scans.len() > 1 {
+                // Until now all were of the first.
+                self.of_scan.resize(self.rows.len(), 0);
+                self.of_scan.push(scan as u32);
+            }
+            self.rows.push(row);
         }
         Ok(())
     }
 
+    /// The scans with their rows, in order.
+    pub fn finish(self) -> Vec<Scan> {
+        let mut scans = self.scans;
+        if let [only] = &mut scans[..] {
+            only.raw.rows = self.rows;
+            return scans;
+        }
+        // Where the rows of each scan begin among those in order of scans.
+        let mut next = vec![0; scans.len()];
+        self.of_scan.iter().for_each(|&scan| next[scan as usize] += 1);
+        let mut begin = 0;
+        for count in &mut next {
+            begin += std::mem::replace(count, begin);
+        }
+        let mut order = vec![0; self.rows.len()];
+        for (place, &scan) in self.of_scan.iter().enumerate() {
+            let next = &mut next[scan as usize];
+            order[*next] = place;
+            *next += 1;
+        }
+        let mut begin = 0;
+        for (scan, end) in scans.iter_mut().zip(next) {
+            scan.raw.rows = order[begin..end].iter().map(|&place| self.rows[place]).collect();
+            begin = end;
+        }
+        scans
+    }
+
     fn number(&mut self, cells: &[&str], column: usize) -> Result<f64, Error> {
         rows::number_in(cells, column, &mut self.decimal)
+    }
+
+    /// The angle in a cell, which may have its unit behind it if that is the unit of the column: `20°`.
+    fn angle(&mut self, cells: &[&str], column: usize) -> Result<f64, Error> {
+        self.number(cells, column).or_else(|error| {
+            let (number, unit) = Unit::at_end(cells[column]);
+            let here = self.options.angles.unwrap_or(self.columns.angles);
+            let same = matches!(
+                (unit, here),
+                (Some(Unit::Deg), Angles::Deg) | (Some(Unit::Rad), Angles::Rad)
+            );
+            let number = Some(number.trim()).filter(|_| same);
+            number.and_then(|number| rows::parse(number, self.decimal)).ok_or(error)
+        })
     }
 
     fn weight(&mut self, cells: &[&str], value: &Value) -> Result<Weight, Error> {
@@ -176,7 +228,7 @@ impl<'a> Sorter<'a> {
             .chain(&columns.wavelength)
             .peekable();
         // Most tables have one group.
-        if telling.peek().is_none() && !self.by_text.is_empty() {
+        if telling.peek().is_none() && self.texts.count() > 0 {
             return Ok(0);
         }
         self.key.clear();
@@ -184,22 +236,15 @@ impl<'a> Sorter<'a> {
             self.key.push_str(cells[column]);
             self.key.push(BETWEEN);
         }
-        if let (key, Some(group)) = &self.last
-            && *key == self.key
-        {
-            return Ok(*group);
+        // Most rows are of the group of the one before, or of the one that came after it the last time.
+        let near = [self.last, self.last + 1];
+        let near = near.into_iter().find(|&text| self.texts.is(text, &self.key));
+        self.last = near.unwrap_or_else(|| self.texts.number(&self.key));
+        if self.last == self.of_text.len() {
+            let group = self.new_group(cells)?;
+            self.of_text.push(group);
         }
-        let group = match self.by_text.get(&self.key) {
-            Some(&group) => group,
-            None => {
-                let group = self.new_group(cells)?;
-                self.by_text.insert(self.key.clone(), group);
-                group
-            }
-        };
-        self.last.0.clone_from(&self.key);
-        self.last.1 = Some(group);
-        Ok(group)
+        Ok(self.of_text[self.last])
     }
 
     /// A group whose text is new; 550 and 550.0 are the same one.
@@ -215,13 +260,13 @@ impl<'a> Sorter<'a> {
             None => self.facts.polarisation.as_deref().map(polarisation::name),
         };
         let splits: Vec<String> = columns.splits.iter().map(|&column| cells[column].to_string()).collect();
-        let mut name = String::new();
+        self.key.clear();
         for part in splits.iter().chain(&wavelength).chain(&polarisation) {
-            name.push_str(part);
-            name.push(BETWEEN);
+            self.key.push_str(part);
+            self.key.push(BETWEEN);
         }
-        let groups = self.by_name.len();
-        let group = *self.by_name.entry(name).or_insert(groups);
+        let groups = self.names.count();
+        let group = self.names.number(&self.key);
         if group == groups {
             let scans = self.empty.iter();
             self.scans
@@ -328,7 +373,7 @@ impl Empty {
 }
 
 /// The angles of a row, as they stand there.
-struct Angles {
+struct Directions {
     theta_i: f64,
     theta_s: f64,
     delta_phi: Option<f64>,

@@ -4,12 +4,15 @@
     reason = "oracles may use std's functions; the code under test may not"
 )]
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use brdfit::analysis::bootstrap::{Noise, bootstrap};
 use brdfit::analysis::misfit::mixture::matched;
 use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
-use brdfit::engine::{self, FitOptions, Material};
+use brdfit::engine::{self, FitOptions, Material, Until};
 use brdfit::input::{ReadOptions, parse};
+use brdfit::until::give_up;
 use brdfit_core::brdf::{DIFFUSE, SURFACE};
 use brdfit_core::geometry::Sample;
 use brdfit_suite::scan::{left_out, scan, shared};
@@ -268,6 +271,20 @@ fn intervals_hold_the_truth_under_correlated_errors() {
     // Of 120 intervals 114 are expected, and independent errors would hold half of it.
     assert!((108..=119).contains(&held), "{held}");
     assert!(plain.iter().all(|&held| held < 45), "{plain:?}");
+}
+
+#[test]
+fn errors_that_nobody_waits_for_are_not_computed() {
+    static OVER: AtomicBool = AtomicBool::new(false);
+    let (samples, options) = measured(8.0, 1);
+    let outcome = engine::fit(&samples, &options).unwrap();
+    give_up(Until::set(&OVER));
+    let known = uncertainty(&samples, &outcome);
+    assert!(known.misfit.is_some());
+    OVER.store(true, Ordering::Relaxed);
+    assert!(uncertainty(&samples, &outcome).misfit.is_none());
+    OVER.store(false, Ordering::Relaxed);
+    assert_eq!(uncertainty(&samples, &outcome), known);
 }
 
 #[test]

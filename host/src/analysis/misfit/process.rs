@@ -5,6 +5,8 @@ use std::ops::Range;
 use brdfit_core::real::Real;
 use rayon::prelude::*;
 
+use crate::until::until;
+
 /// Residuals along lines, each with its row of J; one number after the other, for a scan may have a million samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {
@@ -109,7 +111,12 @@ fn judged(all: &Residuals, lengths: &[f64], degrees_of_freedom: usize, evidence:
         let both = pairs.flat_map(|(length, part)| [false, true].map(|smooth| Process { length, part, smooth }));
         both.collect()
     };
-    let one = |process: Process| (process, likelihood(all, process, degrees));
+    // Of a long scan this takes seconds; what it says once it is not wanted is thrown away.
+    let until = until();
+    let one = |process: Process| match until.is_over() {
+        true => (process, (f64::NEG_INFINITY, f64::NAN)),
+        false => (process, likelihood(all, process, degrees)),
+    };
     let judged_all = |processes: Vec<Process>| -> Vec<Judged> {
         match all.values.len() < MANY {
             true => processes.into_iter().map(one).collect(),
@@ -127,7 +134,7 @@ fn judged(all: &Residuals, lengths: &[f64], degrees_of_freedom: usize, evidence:
     Some(list)
 }
 
-/// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`.
+/// The processes that count, of shares above 1e-4; `None` if none is more likely than independence by a factor of e^`evidence`, or if nobody waits for them any more.
 pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Option<Vec<Node>> {
     let lengths = lengths(all)?;
     let list = judged(all, &lengths, degrees_of_freedom, evidence)?;
@@ -143,6 +150,10 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     };
     let total: f64 = list.iter().map(share).sum();
     let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
+    let until = until();
+    if until.is_over() {
+        return None;
+    }
     let common = Common::new(all);
     let total: f64 = kept.iter().map(|one| share(one)).sum();
     let node = |one: &&Judged| Node {
@@ -151,7 +162,7 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
         variance: one.1.1,
         covariance: common.covariance(all, one.0, one.1.1),
     };
-    Some(kept.iter().map(node).collect())
+    kept.iter().map(|one| (!until.is_over()).then(|| node(one))).collect()
 }
 
 /// Lengths from a step to a part of the longest line, each 1.6 times the last; `None` without lines of two.

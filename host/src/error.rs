@@ -152,7 +152,7 @@ impl std::error::Error for Error {}
 
 /// The text, without its middle where it is so long that nobody reads it: a list may come from a file.
 fn bounded(text: &str) -> String {
-    const HALF: usize = 600;
+    const HALF: usize = 400;
     let count = text.chars().count();
     if count <= 2 * HALF {
         return text.to_string();
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(Error::new("no").in_color(), "\x1b[1;31merror\x1b[0m: no");
         assert_eq!(shown(" a\nb "), "a\\nb");
         let long = Error::new(format!("first {} last", "µ, ".repeat(1000))).to_string();
-        assert!(long.chars().count() < 1300 && long.starts_with("error: first µ") && long.ends_with("µ,  last"));
+        assert!(long.chars().count() < 900 && long.starts_with("error: first µ") && long.ends_with("µ,  last"));
         let hostile = Error::new("a\u{1b}[2Jb").in_file("c\n\u{202e}d").help("e\rf");
         assert_eq!(hostile.to_string(), "c\\n\\u{202e}d: a\\u{1b}[2Jb; e\\rf");
     }

@@ -8,6 +8,7 @@ use brdfit::error::Error;
 use brdfit::input::ReadOptions;
 use brdfit::options::SearchArguments;
 use brdfit::parameters;
+use brdfit::until::{give_up, until};
 use clap::Parser;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
@@ -44,7 +45,12 @@ impl Asked {
     /// # Errors
     /// The system gives no threads.
     pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
-        Ok(self.pool()?.install(work))
+        // What this thread gives up, the pool's gives up too.
+        let until = until();
+        Ok(self.pool()?.install(|| {
+            give_up(until);
+            work()
+        }))
     }
 
     /// The same for one fit, which most often has no use for a pool.

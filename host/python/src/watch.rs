@@ -6,6 +6,7 @@ use std::thread::{self, Builder, Thread};
 use std::time::Duration;
 
 use brdfit::engine::Until;
+use brdfit::until::give_up;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -74,6 +75,7 @@ pub fn scoped<T: Send>(
         let done = &done;
         let run = move || {
             let _done = Done(done, main);
+            give_up(until);
             work(until)
         };
         let worker = Builder::new().spawn_scoped(scope, run).map_err(no_threads)?;
@@ -96,6 +98,7 @@ pub fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(Until) -> T + 
         let _done = Done(&ended, main);
         // The flag is not free before the work ends.
         let _flag = flag;
+        give_up(until);
         work(until)
     };
     let worker = Builder::new().stack_size(STACK).spawn(run).map_err(no_threads)?;

@@ -215,6 +215,7 @@ TERM_SETS = r"terms takes one of: diffuse \| diffuse,surface \|"
         ((30, ANGLES, VALUES * 1j), {}, "^brdf is not an array of numbers: its type is complex128; "),
         ((30, ANGLES, VALUES.astype(object)), {}, "^brdf is not an array of numbers: its type is object; "),
         ((30, ANGLES, VALUES > 0), {}, "^brdf is not an array of numbers: its type is bool; "),
+        ((30, ANGLES, VALUES.astype("M8[s]")), {}, r"^brdf is not an array of numbers: its type is datetime64\[s\]; "),
         ((30, [], []), {}, "^brdf has no samples$"),
         ((30, ANGLES, VALUES), {"mask": VALUES > 0}, "^all samples are left out$"),
         ((30, ANGLES, VALUES), {"mask": VALUES}, "^mask has the type float64; give True where "),

@@ -14,6 +14,7 @@ from common import DATA
 LONG = {
     "fit": "brdfit.fit(scan, method='paper', starts=1_000_000)",
     "fit of the default method": "brdfit.fit(scan, starts=1_000_000)",
+    "errors of a long scan": "brdfit.fit(45, dense, wandering, terms='diffuse')",
     "fit with every model": "brdfit.fit(scan, model='auto', terms='auto', method='paper', starts=1_000_000)",
     "robust": "brdfit.fit(scan, robust=True, method='paper', starts=1_000_000)",
     "fit_many": "brdfit.fit_many(45, np.arange(-80.0, 80.0), many)",
@@ -31,6 +32,8 @@ import brdfit
 scan = brdfit.read({str(DATA / "testdata1_sym_seed1.csv")!r})[0]
 many = np.random.default_rng(0).uniform(1, 2, (100_000, 160))
 angles = np.zeros(50_000_000)
+dense = np.linspace(-80, 80, 1_000_000)
+wandering = 0.1 + 0.01 * np.sin(dense)
 print("ready", flush=True)
 try:
     {{}}

@@ -178,6 +178,17 @@ def test_page_exports_and_notebooks(read, fitted, tmp_path):
     assert fitted.export("zemax") == program("export", result, "--to", "zemax")
     with pytest.raises(ValueError, match="wavelength"):
         fitted.export("openmaterial")
+    tensors = fitted.export("rgl", tmp_path / "paint.bsdf", wavelength=550)
+    assert isinstance(tensors, bytes) and (tmp_path / "paint.bsdf").read_bytes() == tensors
+    assert brdfit.export(fitted, "rgl", wavelength=550) == tensors
+    fitted.export("openmaterial", tmp_path / "paint.openmaterial", wavelength=550)
+    for form in ("bird", "zemax"):
+        fitted.export(form, tmp_path / f"paint.{form}")
+    # Angles and values of RGL are in single precision, and Zemax has ten digits.
+    for form, error in {"bsdf": 3e-4, "openmaterial": 1e-12, "bird": 1e-12, "zemax": 1e-9}.items():
+        (back,) = brdfit.read(tmp_path / f"paint.{form}")
+        expected = brdfit.brdf(back.theta_i, back.theta_s, fitted, delta_phi=back.delta_phi)
+        np.testing.assert_allclose(back.brdf, expected, rtol=error)
     with pytest.raises(ValueError, match="^invalid value 'blender' for to "):
         fitted.export("blender")
     html = fitted._repr_html_()

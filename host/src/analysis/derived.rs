@@ -74,13 +74,21 @@ pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncer
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
-    angles.into_iter().map(|theta_i| at(theta_i, material, known)).collect()
+    // Student's t of thousands of degrees of freedom takes longer than all the rest.
+    let factor = coverage_factor(known);
+    let each = angles.into_iter();
+    each.map(|theta_i| with_factor(theta_i, material, known, factor))
+        .collect()
 }
 
 /// At one angle of incidence, radians.
 pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
+    with_factor(theta_i, material, known, coverage_factor(known))
+}
+
+/// The same where it is known how many standard errors are the half of a 95 % interval.
+fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f64) -> Derived {
     let slopes = material.off_zero();
-    let factor = coverage_factor(known);
     // No surface reflects more than it receives.
     let value = |value: f64, mut gradient: Values| {
         for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
@@ -115,7 +123,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
         theta_i,
         rho_s_f,
         rho_v_f: product("rho_v"),
-        peak: rho_s_f.and_then(|product| peak(theta_i, material, known, product.value)),
+        peak: rho_s_f.and_then(|product| peak(theta_i, material, known, (product.value, factor))),
         reflectance: {
             let (sum, gradient) = reflectance(material, theta_i);
             value(sum, gradient)
@@ -123,8 +131,7 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
     }
 }
 
-fn peak(theta_i: f64, material: &Material, known: &Uncertainty, product: f64) -> Option<Peak> {
-    let factor = coverage_factor(known);
+fn peak(theta_i: f64, material: &Material, known: &Uncertainty, (product, factor): (f64, f64)) -> Option<Peak> {
     // The other terms do not belong to the lobe.
     const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
     let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));

@@ -40,7 +40,8 @@ def numbers(name: str, value: Any, unit: str | None = None) -> Numbers:
 
 
 def _in_unit(name: str, value: Any, unit: str | None) -> Any:
-    inner = getattr(value, "data", None)
+    # The buffer of an array of dates is an error in itself.
+    inner = None if isinstance(value, np.ndarray) else getattr(value, "data", None)
     if hasattr(inner, "magnitude"):
         # An xarray.DataArray of quantities.
         value = inner

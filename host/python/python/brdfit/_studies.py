@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -260,8 +260,14 @@ def report(
     return page
 
 
-def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str:
-    """The model for another program, as `brdfit export --to` writes it.
+@overload
+def export(  # type: ignore[overload-overlap]
+    fit: Fit, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any
+) -> bytes: ...
+@overload
+def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
+def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str | bytes:
+    """The model for another program, as `brdfit export --to` writes it: text, or bytes in the form `rgl`.
 
     Parameters
     ----------

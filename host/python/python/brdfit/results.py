@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as _json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -174,8 +174,14 @@ class Fit:
         x = np.broadcast_to(self.x, (i.size, self.x.size))
         return _brdfit.brdf(self.model, i, s, phi, x, ln).reshape(shape)
 
-    def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str:
-        """The model for another program: the text that `brdfit export --to` writes, and into a file if `path` names one. Further keywords are its options, such as wavelength."""
+    @overload
+    def export(  # type: ignore[overload-overlap]
+        self, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any
+    ) -> bytes: ...
+    @overload
+    def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
+    def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str | bytes:
+        """The model for another program: what `brdfit export --to` writes, text or in the form `rgl` bytes, and into a file if `path` names one. Further keywords are its options, such as wavelength."""
         return _command.exported(self.json, to, path, **options)
 
     def svg(self, title: str = "") -> str:

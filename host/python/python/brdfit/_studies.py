@@ -261,9 +261,7 @@ def report(
 
 
 @overload
-def export(  # type: ignore[overload-overlap]
-    fit: Fit, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any
-) -> bytes: ...
+def export(fit: Fit, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any) -> bytes: ...
 @overload
 def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
 def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str | bytes:

@@ -175,9 +175,7 @@ class Fit:
         return _brdfit.brdf(self.model, i, s, phi, x, ln).reshape(shape)
 
     @overload
-    def export(  # type: ignore[overload-overlap]
-        self, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any
-    ) -> bytes: ...
+    def export(self, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any) -> bytes: ...
     @overload
     def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
     def export(self, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str | bytes:

@@ -49,7 +49,6 @@ fn outliers_of_a_synthetic_scan_are_found() {
     let (wanted, found, plain) = (fit(&without, false), fit(&dirty, true), fit(&dirty, false));
     let robust = found.robust.as_ref().expect("what was left out");
     assert_eq!((&robust.outliers, found.samples), (&spoilt, without.len()));
-    // What the scan does not tell, such as rho_s, may end elsewhere in its valley.
     check(apart(&clean, &found, &wanted), tolerance::ROBUST_SAME);
     assert!(apart(&clean, &plain, &wanted) > 0.1);
     // Where there are no outliers nothing is left out.

@@ -131,6 +131,14 @@ impl<R: Real> Default for Options<R> {
     }
 }
 
+/// [`Fit::settle`]: the first damping at most, and what is left of it after each step.
+const SETTLING_DAMPING: f64 = 1e-7;
+const SETTLING_FALL: f64 = 0.1;
+/// No more than this part of the cost may a step of it lose.
+const SETTLING_RISE: f64 = 1e-6;
+/// It ends where a step promises no more than the square of so many units of rounding, of the cost: that of the gradient.
+const SETTLED: f64 = 256.0;
+
 /// How a fit ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -256,34 +264,14 @@ impl<R: Real, const P: usize> Fit<R, P> {
             return 0;
         }
         let cost = self.at.cost;
-        let mut lower = [R::ZERO; P];
-        let mut upper = [R::ZERO; P];
-        let mut damped = self.at.hessian;
-        for i in 0..P {
-            lower[i] = bounds.lower[i] - self.x[i];
-            upper[i] = bounds.upper[i] - self.x[i];
-            // A column of J below rounding has no scale of its own, and its step could be of any size: see it as just above.
-            let unseen = R::EPSILON / self.x[i].abs().max(R::ONE);
-            let scale = (unseen * unseen * cost).max(self.scale[i]).max(R::MIN_POSITIVE);
-            damped[i][i] += self.damping * scale;
-        }
-        let step = boxqp::minimize(&damped, &self.at.gradient, &lower, &upper);
+        let step = self.bounded(&self.at.hessian, bounds);
         let mut straight = self.x;
         for i in 0..P {
             straight[i] += step[i];
         }
-        let bent = problem.bend(&self.x, &step, straight);
-        let mut x = self.x;
+        let x = self.landing(bounds, &step, &problem.bend(&self.x, &step, straight));
         let mut moved = false;
         for i in 0..P {
-            // A step to a bound ends on it, whatever the rounding of the sum.
-            x[i] = if step[i] == upper[i] {
-                bounds.upper[i]
-            } else if step[i] == lower[i] {
-                bounds.lower[i]
-            } else {
-                bent[i].max(bounds.lower[i]).min(bounds.upper[i])
-            };
             moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
         }
         if !moved {
@@ -319,6 +307,91 @@ impl<R: Real, const P: usize> Fit<R, P> {
         } else {
             self.damping = (self.damping * self.growth).min(R::MAX);
             self.growth = (self.growth + self.growth).min(R::of(1e6));
+        }
+        1
+    }
+
+    /// The damped step within the bounds, by this model of the second derivatives.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn bounded(&self, model: &[[R; P]; P], bounds: &Bounds<R, P>) -> [R; P] {
+        let mut lower = [R::ZERO; P];
+        let mut upper = [R::ZERO; P];
+        let mut damped = *model;
+        for i in 0..P {
+            lower[i] = bounds.lower[i] - self.x[i];
+            upper[i] = bounds.upper[i] - self.x[i];
+            // A column of J below rounding has no scale of its own, and its step could be of any size: see it as just above.
+            let unseen = R::EPSILON / self.x[i].abs().max(R::ONE);
+            let scale = (unseen * unseen * self.at.cost).max(self.scale[i]).max(R::MIN_POSITIVE);
+            damped[i][i] += self.damping * scale;
+        }
+        boxqp::minimize(&damped, &self.at.gradient, &lower, &upper)
+    }
+
+    /// Where a step leads; `to`, but one to a bound ends on it, whatever the rounding of the sum.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn landing(&self, bounds: &Bounds<R, P>, step: &[R; P], to: &[R; P]) -> [R; P] {
+        let mut x = bounds.clamp(*to);
+        for i in 0..P {
+            if step[i] == bounds.upper[i] - self.x[i] {
+                x[i] = bounds.upper[i];
+            } else if step[i] == bounds.lower[i] - self.x[i] {
+                x[i] = bounds.lower[i];
+            }
+        }
+        x
+    }
+
+    /// One step of a fit that has converged, beyond what its cost can tell: to where the gradient vanishes; how many passes it took: one, or none if there is nothing left to gain.
+    ///
+    /// Along a valley J'J may be a hundredth of the second derivative. So it is corrected in `model`, at first J'J, by the gradients at both ends of each step (Broyden, Fletcher, Goldfarb and Shanno), which keeps it positive definite.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn settle(
+        &mut self,
+        problem: &(impl Problem<R, P> + ?Sized),
+        bounds: &Bounds<R, P>,
+        model: &mut [[R; P]; P],
+    ) -> u32 {
+        self.damping = self.damping.min(R::of(SETTLING_DAMPING));
+        let step = self.bounded(model, bounds);
+        let mut to = self.x;
+        for i in 0..P {
+            to[i] += step[i];
+        }
+        let x = self.landing(bounds, &step, &to);
+        let mut way = x;
+        let mut promised = R::ZERO;
+        for i in 0..P {
+            way[i] -= self.x[i];
+            promised -= way[i] * self.at.gradient[i];
+        }
+        let least = R::of(SETTLED) * R::EPSILON;
+        if !(promised > least * least * self.at.cost) {
+            return 0;
+        }
+        let trial = problem.linearize(&x);
+        self.passes += 1;
+        let (mut slope, mut curvature, mut missing) = (R::ZERO, R::ZERO, trial.gradient);
+        for i in 0..P {
+            missing[i] -= self.at.gradient[i];
+            for j in 0..P {
+                missing[i] -= model[i][j] * way[j];
+            }
+            slope += way[i] * trial.gradient[i];
+            curvature += way[i] * missing[i];
+        }
+        if curvature > R::of(-0.9) * promised && curvature.abs() > R::of(0.01) * promised {
+            for i in 0..P {
+                for j in 0..P {
+                    model[i][j] += missing[i] * missing[j] / curvature;
+                }
+            }
+        }
+        // No further beyond where the slope vanishes than before it.
+        if slope <= promised && trial.cost < self.at.cost * R::of(1.0 + SETTLING_RISE) {
+            self.x = x;
+            self.at = trial;
+            self.damping *= R::of(SETTLING_FALL);
         }
         1
     }

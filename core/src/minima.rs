@@ -78,11 +78,9 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
         self.list.first()
     }
 
-    /// Takes a further fit of the best minimum in place of the old one, if it is no worse; not counted as a hit.
+    /// Takes a further fit of the best minimum in place of the old one; not counted as a hit.
     pub fn refine(&mut self, fit: &Fit<R, P>) {
-        if let Some(old) = self.list.first_mut()
-            && fit.at.cost <= old.cost
-        {
+        if let Some(old) = self.list.first_mut() {
             (old.x, old.cost) = (fit.x, fit.at.cost);
         }
     }

@@ -20,6 +20,8 @@ const RIVAL_FIT: (f64, f64) = (1.35, 1.3);
 pub(super) const EXACT: f64 = 1e-9;
 /// The same of a scan with little noise: a variation of the best can begin far above it.
 pub(super) const QUIET: f64 = 1e-4;
+/// Above this part the model does not follow the scan, and a minimum that was not met may do so better: the first rounds do not settle it.
+pub(super) const FOLLOWED: f64 = 0.1;
 /// Ends that are remembered.
 const ENDS: usize = 16;
 /// Two ends of the same cost, to this part, are one.
@@ -78,7 +80,7 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         self.list.first().is_none_or(|best| cost < best.cost * factor)
     }
 
-    /// Is the best cost below this part, [`EXACT`] or [`QUIET`], of that of a poor candidate?
+    /// Is the best cost below this part, [`EXACT`], [`QUIET`] or [`FOLLOWED`], of that of a poor candidate?
     #[cfg_attr(target_os = "none", inline(never))]
     pub fn is_below(&self, part: f64) -> bool {
         let best = self.list.first();

@@ -8,7 +8,7 @@ use heapless::Vec;
 
 use super::ends::Ends;
 use super::{Candidate, Evaluations, Found, MINIMA, Scene, Waits, log};
-use crate::lm::{Bounds, Fit, Options};
+use crate::lm::{Bounds, Fit, Options, Stop};
 use crate::minima::{self, Minima, Minimum};
 use crate::real::Real;
 
@@ -30,6 +30,8 @@ const VARIATION_SHORT: u32 = 3;
 const ROUGH: f64 = 1e-8;
 /// [`Options::max_passes`] of these fits.
 const ROUGH_PASSES: u32 = 100;
+/// Passes at most in which the best, at the end, comes to stand still.
+const SETTLING: u32 = 10;
 
 /// How far a search is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +84,8 @@ enum Task {
     Converge,
     /// A pass of the best.
     Last,
+    /// A pass of the best when its cost falls no more; the fit that is left has a model of its second derivatives.
+    Settle,
 }
 
 /// Which candidates a round has.
@@ -268,6 +272,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             Task::Judge => self.judge(scene),
             Task::Converge => self.converge(scene),
             Task::Last => self.last(scene),
+            Task::Settle => self.settle(scene),
         }
         self.phase != Phase::Ended
     }
@@ -324,6 +329,26 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             self.evaluations.linearize += best.step(scene, &self.bounds, &self.options);
             return;
         }
+        let settles = best.stop.is_some_and(Stop::converged) && self.options.cost_tolerance <= R::EPSILON;
+        self.until = if settles { best.passes + SETTLING } else { 0 };
+        self.fits.clear();
+        // There is room.
+        let _ = self.fits.push(Trial { fit: *best, start: 0 });
+        self.task = Task::Settle;
+    }
+
+    fn settle(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
+        let best = &mut self.ends.best;
+        if best.passes < self.until
+            && let Some(Trial { fit, .. }) = self.fits.first_mut()
+        {
+            let passes = best.settle(scene, &self.bounds, &mut fit.at.hessian);
+            self.evaluations.linearize += passes;
+            if passes > 0 {
+                return;
+            }
+        }
+        self.fits.clear();
         self.ends.minima.refine(best);
         self.phase = Phase::Ended;
         log(best, self.ends.minima.as_slice().len(), self.evaluations);

@@ -4,7 +4,7 @@ use super::{Kind, Phase, Search, Task};
 use crate::lm::Bounds;
 use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
-use crate::search::ends::EXACT;
+use crate::search::ends::{EXACT, FOLLOWED};
 use crate::search::{BANDS, Scene};
 
 /// The default method makes at most this many candidates, if nothing else is asked for.
@@ -58,7 +58,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             |hits| ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(EXACT) && !self.flat;
         if self.round + 1 == ROUNDS || self.round == ROUNDS {
             let hits = if self.round == ROUNDS { HITS.0 } else { HITS.1 };
-            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene);
+            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene) || !ends.is_below(FOLLOWED);
             return !self.unsettled;
         }
         if self.round == ROUNDS + FIRST_BANDS {

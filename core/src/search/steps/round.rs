@@ -165,7 +165,11 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             self.ends.note_rival(scene, fit);
         }
         let varies = self.kind == Kind::Index;
-        let first = self.place == 0 && (!varies || self.ends.is_below(QUIET));
+        let first = if varies {
+            self.ends.is_below(QUIET)
+        } else {
+            self.place == 0
+        };
         // A basin where fits converge slowly would lose every round to one where they are fast.
         let elsewhere = !varies && self.ends.is_elsewhere(scene, &fit.x);
         let strays = elsewhere && !self.elsewhere;

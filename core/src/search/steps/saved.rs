@@ -10,10 +10,10 @@ use crate::search::{BANDS, Waits};
 impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R, P, M, F> {
     fn shape(&self) -> [u32; 3] {
         let capacities = (P as u32) << 24 | (F as u32 & 0xff) << 16 | M as u32 & 0xffff;
-        [3, size_of::<R>() as u32, capacities]
+        [4, size_of::<R>() as u32, capacities]
     }
     fn fields(&mut self, tape: &mut Tape<'_>) {
-        use Task::{Begin, Choose, Converge, Judge, Last, Level, Propose, Short, Weigh};
+        use Task::{Begin, Choose, Converge, Judge, Last, Level, Propose, Settle, Short, Weigh};
         let phases = [
             Phase::Known,
             Phase::Rounds,
@@ -22,7 +22,9 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R
             Phase::Ended,
         ];
         tape.one_of(&mut self.phase, &phases);
-        let tasks = [Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last];
+        let tasks = [
+            Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last, Settle,
+        ];
         tape.one_of(&mut self.task, &tasks);
         let bands: [Kind; 2 * BANDS as usize] = core::array::from_fn(|k| match k as u32 {
             band if band < BANDS => Kind::Band(band),

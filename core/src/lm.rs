@@ -344,7 +344,7 @@ impl<R: Real, const P: usize> Fit<R, P> {
 
     /// One step of a fit that has converged, beyond what its cost can tell: to where the gradient vanishes; how many passes it took: one, or none if there is nothing left to gain.
     ///
-    /// Along a valley J'J may be a hundredth of the second derivative. So it is corrected in `model`, at first J'J, by the gradients at both ends of each step (Broyden, Fletcher, Goldfarb and Shanno), which keeps it positive definite.
+    /// Along a valley J'J may be a hundredth of the second derivative. So it is corrected in `model`, at first J'J, by the gradients at both ends of each step: the symmetric correction of rank one (Nocedal and Wright 2006, Eq. 6.24), where that leaves it positive along the step.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(crate) fn settle(
         &mut self,

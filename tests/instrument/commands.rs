@@ -42,32 +42,44 @@ fn joint_fits_take_part() {
     assert!((0.03..0.04).contains(&rho_d), "{rho_d}");
 }
 
-#[test]
-fn every_command_honours_or_refuses() {
-    let folder = TempDir::new().unwrap();
+/// All that can be known of an instrument.
+const ALL: [&str; 9] = [
+    "--terms",
+    "diffuse,surface",
+    "--prior",
+    "n=1.50+-0.02",
+    "--aperture-half-angle",
+    "0.5",
+    "--scale-uncertainty",
+    "3%",
+    "--conserve-energy",
+];
+
+/// A command line with all of it.
+fn with_all<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    [arguments, &ALL].concat()
+}
+
+/// A scan whose detector is off by half a degree.
+fn scan(folder: &TempDir) -> String {
     let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 5);
     let row = |sample: &Sample<f64>| {
         let (theta_i, theta_s) = (sample.theta_i.to_degrees(), sample.theta_s.to_degrees() + 0.5);
         format!("{theta_i},{theta_s},{}\n", sample.brdf)
     };
     let table: String = samples.iter().map(row).collect();
-    let file = write(
-        &folder,
+    write(
+        folder,
         "scan.csv",
         format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{table}"),
-    );
-    let all = [
-        "--terms",
-        "diffuse,surface",
-        "--prior",
-        "n=1.50+-0.02",
-        "--aperture-half-angle",
-        "0.5",
-        "--scale-uncertainty",
-        "3%",
-        "--conserve-energy",
-    ];
-    let fit = json(&[&["fit", &file, "--fit-offset"], &all[..]].concat());
+    )
+}
+
+#[test]
+fn fit_and_batch_honour_all() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
+    let fit = json(&with_all(&["fit", &file, "--fit-offset"]));
     let beside = &fit["provenance"]["instrument"];
     assert_eq!(beside["priors"]["n"], serde_json::json!([1.5, 0.02]));
     assert_eq!(
@@ -80,19 +92,44 @@ fn every_command_honours_or_refuses() {
     );
     assert!((fit["offset_deg"].as_f64().unwrap() - 0.5).abs() < 0.3);
     assert!((fit["parameters"]["n"].as_f64().unwrap() - 1.5).abs() < 0.05);
-    let text = succeed(&[&["fit", &file, "--fit-offset"], &all[..]].concat());
+    let out = folder.path().join("results.csv");
+    let ran = brdfit(
+        &with_all(&["batch", &file, "--fit-offset", "--out", out.to_str().unwrap()]),
+        b"",
+    );
+    assert_eq!(ran.code, 0, "{}", ran.errors);
+    let results = std::fs::read_to_string(&out).unwrap();
+    let cell = |name: &str| {
+        let mut lines = results.lines();
+        let place = lines.next()?.split(',').position(|head| head == name)?;
+        lines.next()?.split(',').nth(place)?.parse::<f64>().ok()
+    };
+    assert_eq!(cell("offset_deg"), fit["offset_deg"].as_f64());
+}
+
+#[test]
+fn text_and_report_honour_all() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
+    let text = succeed(&with_all(&["fit", &file, "--fit-offset"]));
     for word in ["offset", "priors", "aperture", "scale", "energy"] {
         assert!(text.contains(&format!("\n  {word} ")), "{word}\n{text}");
     }
     // Without any of it nothing is said of it.
     assert!(json(&["fit", &file])["provenance"]["instrument"].is_null());
-    let page = brdfit(&[&["report", &file, "--fit-offset"], &all[..]].concat(), b"");
+    let page = brdfit(&with_all(&["report", &file, "--fit-offset"]), b"");
     assert!(
         page.code == 0
             && page.output.contains("averaged over a half-angle of 0.5 deg")
             && page.output.contains("offset_deg")
     );
-    let profile = json(&[&["profile", &file, "--parameter", "n"], &all[..]].concat());
+}
+
+#[test]
+fn profiles_honour_all() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
+    let profile = json(&with_all(&["profile", &file, "--parameter", "n"]));
     let interval = &profile["parameters"][0]["intervals"][1];
     let (low, high) = (interval["low"].as_f64().unwrap(), interval["high"].as_f64().unwrap());
     assert!(1.35 < low && low < high && high < 1.55, "{interval}");
@@ -111,28 +148,23 @@ fn every_command_honours_or_refuses() {
         interval["low"].as_f64() < Some(0.15) && interval["high"].as_f64() > Some(0.15),
         "{interval}"
     );
-    let joint = json(&[&["joint", &file, &file, "--share", "m,n"], &all[..]].concat());
+}
+
+#[test]
+fn joint_honours_all() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
+    let joint = json(&with_all(&["joint", &file, &file, "--share", "m,n"]));
     assert!((joint["scans"][0]["parameters"]["n"].as_f64().unwrap() - 1.5).abs() < 0.05);
-    assert!(fail(&["joint", &file, &file, "--fit-offset"]).contains("--fit-offset"));
-    let out = folder.path().join("results.csv");
-    let ran = brdfit(
-        &[
-            &["batch", &file, "--fit-offset", "--out", out.to_str().unwrap()],
-            &all[..],
-        ]
-        .concat(),
-        b"",
-    );
-    assert_eq!(ran.code, 0, "{}", ran.errors);
-    let results = std::fs::read_to_string(&out).unwrap();
-    let cell = |name: &str| {
-        let mut lines = results.lines();
-        let place = lines.next()?.split(',').position(|head| head == name)?;
-        lines.next()?.split(',').nth(place)?.parse::<f64>().ok()
-    };
-    assert_eq!(cell("offset_deg"), fit["offset_deg"].as_f64());
+}
+
+#[test]
+fn what_cannot_be_honoured_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
     for (bad, word) in [
-        (&["fit", &file, "--fit-offset", "--robust"][..], "--robust"),
+        (&["joint", &file, &file, "--fit-offset"][..], "--fit-offset"),
+        (&["fit", &file, "--fit-offset", "--robust"], "--robust"),
         (
             &["fit", &file, "--aperture-half-angle", "1", "--precision", "f32"],
             "f32",

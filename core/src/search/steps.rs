@@ -6,7 +6,7 @@ mod saved;
 
 use heapless::Vec;
 
-use super::ends::Ends;
+use super::ends::{EXACT, Ends};
 use super::{Candidate, Evaluations, Found, MINIMA, Scene, Waits, log};
 use crate::lm::{Bounds, Fit, Options, Stop};
 use crate::minima::{self, Minima, Minimum};
@@ -324,12 +324,14 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     }
 
     fn last(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
+        let exact = self.ends.is_below(EXACT);
         let best = &mut self.ends.best;
         if best.stop.is_none() {
             self.evaluations.linearize += best.step(scene, &self.bounds, &self.options);
             return;
         }
-        let settles = best.stop.is_some_and(Stop::converged) && self.options.cost_tolerance <= R::EPSILON;
+        // The gradient of an exact fit is rounding.
+        let settles = best.stop.is_some_and(Stop::converged) && self.options.cost_tolerance <= R::EPSILON && !exact;
         self.until = if settles { best.passes + SETTLING } else { 0 };
         self.fits.clear();
         // There is room.

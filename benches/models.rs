@@ -23,7 +23,7 @@ fn main() {
     let scans: Vec<(String, Measurement, Choice)> = files.iter().map(|file| chosen(file)).collect();
     println!("# Which model the measured scans need\n");
     println!(
-        "The choice of `brdfit fit --model auto`: the least BIC of all {} models.",
+        "The choice of `brdfit fit --model auto`: the least BIC of all {} models, by the correlation of residuals: a misfit that wanders over many degrees counts as few samples, so the least residual is not always chosen.",
         MODELS.len()
     );
     println!(

@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use crate::analysis::misfit::process::{self, Residuals};
-use crate::analysis::misfit::{Mean, SURE, rows};
+use crate::analysis::misfit::{EVIDENCE, Mean, SURE, rows};
 use crate::analysis::unseen;
 use crate::engine::joint::JointFit;
 use crate::engine::uncertainty::Misfit;
@@ -68,6 +68,9 @@ impl Linear {
             all.ends.extend(one.ends.iter().map(|end| begin + end));
         }
         let (kept, triangle) = orthogonal(&mut all);
+        if triangle.is_empty() {
+            return None;
+        }
         let seen = owners.into_iter().zip(&kept).filter(|(_, kept)| **kept);
         Some(Linear {
             owners: seen.map(|(owner, _)| owner).collect(),
@@ -90,7 +93,7 @@ impl Linear {
 
     /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted.
     pub fn factors(&self, fitted: &JointFit) -> Option<(Misfit, Vec<Vec<f64>>)> {
-        let nodes = process::nodes(&self.all, self.degrees_of_freedom, crate::analysis::misfit::EVIDENCE)?;
+        let nodes = process::nodes(&self.all, self.degrees_of_freedom, EVIDENCE)?;
         let mean = Mean::of(&nodes, self.degrees_of_freedom);
         let factors: Vec<f64> = (0..self.owners.len())
             .map(|k| self.factor(k, &mean.covariance))

@@ -23,7 +23,7 @@ fn main() {
     let scans: Vec<(String, Measurement, Choice)> = files.iter().map(|file| chosen(file)).collect();
     println!("# Which model the measured scans need\n");
     println!(
-        "The choice of `brdfit fit --model auto`: the least BIC of all {} models, by the correlation of residuals: a misfit that wanders over many degrees counts as few samples, so the least residual is not always chosen.",
+        "The choice of `brdfit fit --model auto`: the least BIC of all {} models. Where the residuals of the best of them wander with the angle, so many samples count as one, for all models alike (\"independent\" has their number): of equally many parameters the least residual is chosen, and a further parameter must buy more than wandering gives.",
         MODELS.len()
     );
     println!(
@@ -34,17 +34,18 @@ fn main() {
     );
     println!("Printed by `cargo run --release --example models > benches/results/models.md`.\n");
     println!(
-        "| scan | samples | Eq. 14 | best | falls by | noise | model | its parameters | BIC to the next | on a bound |"
+        "| scan | samples | independent | Eq. 14 | best | falls by | noise | model | its parameters | BIC to the next | on a bound |"
     );
-    println!("|---|--:|--:|--:|--:|--:|---|--:|--:|---|");
+    println!("|---|--:|--:|--:|--:|--:|--:|---|--:|--:|---|");
     for (name, measurement, choice) in &scans {
         let best = choice.chosen();
         let paper = choice.candidates[0].outcome.rms_ln;
         let others = choice.candidates.iter().filter(|one| one.options != best.options);
         let next = others.map(|one| one.criteria.bic).fold(f64::INFINITY, f64::min);
         println!(
-            "| {name} | {} | {paper:.3} | {:.3} | {:.0} % | {:.3} | {} | {} | {:.0} | {} |",
+            "| {name} | {} | {:.0} | {paper:.3} | {:.3} | {:.0} % | {:.3} | {} | {} | {:.0} | {} |",
             measurement.samples.len(),
+            best.criteria.samples,
             best.outcome.rms_ln,
             100.0 * (1.0 - best.outcome.rms_ln / paper),
             noise(&measurement.samples),

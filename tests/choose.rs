@@ -8,7 +8,7 @@ use brdfit::analysis::bootstrap::{Noise, copy};
 use brdfit::analysis::choose::{self, SETS, Wanted, sets};
 use brdfit::analysis::joint;
 use brdfit::analysis::profile::calibrate::threshold;
-use brdfit::engine::{self, FitOptions, Material};
+use brdfit::engine::{self, FitOptions, Material, Model};
 use brdfit::result::words;
 use brdfit::terms::term_names;
 use brdfit_core::brdf::{ALL, DIFFUSE, NAMES, SURFACE, VOLUME, has, parameters};
@@ -112,7 +112,11 @@ fn residuals_that_wander_buy_no_terms() {
                 .min_by(|a, b| independent(a).total_cmp(&independent(b)));
             plain += u64::from(least.unwrap().options.terms == terms);
             right += u64::from(choice.chosen().options.terms == terms);
-            correlated += u64::from(choice.process.is_some_and(|process| process.length > 0.05));
+            correlated += u64::from(
+                choice
+                    .inflation
+                    .is_some_and(|inflation| inflation.process.length > 0.05),
+            );
             let larger = choice.candidates.iter().find(|one| Some(one.options.terms) == more);
             rejected += u64::from(larger.is_some_and(|larger| larger.p_value.unwrap() < 0.05));
         }
@@ -122,6 +126,39 @@ fn residuals_that_wander_buy_no_terms() {
         assert!(10 * right >= 8 * copies && right > plain, "{terms}: {right}, {plain}");
         assert!(correlated + 1 >= copies, "{correlated}");
         assert!(rejected <= 5, "{rejected}");
+    }
+}
+
+/// All candidates are judged by one correlation, so that of equally many parameters the least cost is the best; misfit that wanders is what measured scans have.
+#[test]
+fn of_equally_many_parameters_the_least_cost_is_the_best() {
+    let truth = Material::paper([0.1, 2.0, 0.3, 0.2, 1.5, 0.5]);
+    let models = [
+        "beckmann",
+        "beckmann-smith",
+        "ggx",
+        "ggx-smith",
+        "beckmann-own-slope",
+        "hyper-cauchy",
+    ];
+    let list: Vec<FitOptions> = models.into_iter().filter_map(Model::find).map(FitOptions::of).collect();
+    for copy in 0..4 {
+        let choice = choose::choose(&wandering(&truth, copy), &list).unwrap();
+        let inflation = choice.inflation.expect("a correlation");
+        assert!(inflation.factor > 2.0, "{inflation:?}");
+        for one in &choice.candidates {
+            let count = one.outcome.samples as f64 / inflation.factor;
+            assert!(tolerance::CRITERION.admits((one.criteria.samples / count - 1.0).abs()));
+            let k = one.criteria.parameters as f64 + 1.0;
+            let bic = count * (one.outcome.cost / one.outcome.samples as f64).ln() + k * count.ln();
+            assert!(tolerance::CRITERION.admits((one.criteria.bic / bic - 1.0).abs()));
+            for other in &choice.candidates {
+                let alike = one.criteria.parameters == other.criteria.parameters;
+                if alike && one.outcome.cost < other.outcome.cost {
+                    assert!(one.criteria.bic < other.criteria.bic && one.criteria.aicc < other.criteria.aicc);
+                }
+            }
+        }
     }
 }
 

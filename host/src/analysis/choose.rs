@@ -7,7 +7,7 @@ use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
-use super::misfit::{self, process::Process};
+use super::misfit::{self, Inflation};
 use crate::engine::robust::{self, Robust};
 use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
 
@@ -139,8 +139,8 @@ pub struct Choice {
     pub candidates: Vec<Candidate>,
     /// Place of the chosen one.
     pub place: usize,
-    /// The correlation of residuals along the angle by which all are judged; `None` where it is not seen.
-    pub process: Option<Process>,
+    /// The correlation of residuals along the angle by which all are judged, that of the best fit; `None` where it is not seen.
+    pub inflation: Option<Inflation>,
 }
 
 impl Choice {
@@ -297,11 +297,11 @@ pub fn choose(samples: &[Sample<f64>], list: &[FitOptions]) -> Result<Choice, Fi
 fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result<Choice, FitError> {
     let mut candidates: Vec<Candidate> = Vec::new();
     let outcomes: Vec<&Outcome> = fitted.iter().map(|(_, outcome)| outcome).collect();
-    let (process, costs) = misfit::costs(samples, &outcomes).unzip();
-    let costs = costs.unwrap_or_else(|| outcomes.iter().map(|outcome| outcome.cost).collect());
-    for ((options, outcome), cost) in fitted.into_iter().zip(costs) {
+    let inflation = misfit::inflation_of_best(samples, &outcomes);
+    let count = counted(samples);
+    for (options, outcome) in fitted {
         let free = options.free().count();
-        let criteria = Criteria::new(counted(samples), free, cost, options.precision);
+        let criteria = Criteria::new(count, inflation, free, outcome.cost, options.precision);
         let tested = SETS.iter().find(|(terms, _)| *terms == options.terms);
         let smaller = candidates.iter().find(|other| {
             other.options.model == options.model && tested.is_some_and(|(_, set)| *set == Some(other.options.terms))
@@ -320,7 +320,7 @@ fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result
     Ok(Choice {
         candidates,
         place,
-        process,
+        inflation,
     })
 }
 

@@ -4,17 +4,20 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::chance::above_f;
+use super::misfit::Inflation;
 use crate::engine::Precision;
 
 /// How well a fit does, and what it takes.
+///
+/// Correlated samples count as fewer independent ones, all by the same factor, so that of fits with as many parameters the one of least cost is the best; the deviance is over that factor and the sample size is the effective one (Burnham and Anderson 2002, section 2.5; Jones 2011).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criteria {
     /// Number of its free parameters.
     pub parameters: usize,
-    /// Samples of weight above 0.
+    /// Samples of weight above 0, over the factor of their correlation.
     pub samples: f64,
-    /// Sum of squared residuals of ln f, by their correlation where that is seen, but at least what rounding leaves.
-    cost: f64,
+    /// Mean squared residual of ln f, but at least what rounding leaves.
+    variance: f64,
     /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
     pub aicc: f64,
     /// Schwarz's criterion.
@@ -28,17 +31,23 @@ pub fn counted(samples: &[Sample<f64>]) -> usize {
 
 impl Criteria {
     /// Of a fit of this cost with so many free parameters.
-    pub fn new(samples: usize, parameters: usize, cost: f64, precision: Precision) -> Self {
-        let samples = samples as f64;
-        let cost = cost.max(rounding(samples, precision));
+    pub fn new(
+        samples: usize,
+        inflation: Option<Inflation>,
+        parameters: usize,
+        cost: f64,
+        precision: Precision,
+    ) -> Self {
+        let variance = (cost / samples as f64).max(rounding(precision));
+        let samples = samples as f64 / inflation.map_or(1.0, |inflation| inflation.factor);
         // The variance of the residuals is a parameter too.
         let k = parameters as f64 + 1.0;
-        let deviance = samples * Real::portable_ln(cost / samples);
+        let deviance = samples * Real::portable_ln(variance);
         let room = samples - k - 1.0;
         Criteria {
             parameters,
             samples,
-            cost,
+            variance,
             aicc: if room > 0.0 {
                 deviance + 2.0 * k + 2.0 * k * (k + 1.0) / room
             } else {
@@ -48,24 +57,24 @@ impl Criteria {
         }
     }
 
-    /// Probability by chance of at least the fall of the cost from `smaller`, a fit of a model within this one: the F test; `None` if that has as many parameters.
+    /// Probability by chance of at least the fall of the cost from `smaller`, a fit of a model within this one: the F test; `None` if that has as many parameters, or samples leave no degree of freedom.
     pub fn p_value(&self, smaller: &Criteria) -> Option<f64> {
         let more = self
             .parameters
             .checked_sub(smaller.parameters)
             .filter(|&more| more > 0)? as f64;
         let left = self.samples - self.parameters as f64;
-        let fall = smaller.cost.max(self.cost) - self.cost;
-        let f = fall / more / (self.cost / left);
+        let fall = smaller.variance.max(self.variance) - self.variance;
+        let f = fall / more / (self.variance / left);
         above_f(f, more, left)
     }
 }
 
-/// A cost below this is rounding, of which no criterion may make anything.
-fn rounding(samples: f64, precision: Precision) -> f64 {
+/// A mean square below this is rounding, of which no criterion may make anything.
+fn rounding(precision: Precision) -> f64 {
     let residual = match precision {
         Precision::F64 => 1e-10,
         Precision::F32 => 1e-5,
     };
-    samples * residual * residual
+    residual * residual
 }

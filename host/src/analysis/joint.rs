@@ -7,7 +7,7 @@ use brdfit_core::real::Real;
 use rayon::prelude::*;
 
 use super::criteria::Criteria;
-use super::misfit::process::Process;
+use super::misfit::Inflation;
 use super::unseen;
 use crate::engine::joint::{self, JointFit};
 use crate::engine::uncertainty::Misfit;
@@ -36,8 +36,8 @@ pub struct Fits {
     pub candidates: Vec<Candidate>,
     /// Place of the one of least BIC.
     pub place: usize,
-    /// The correlation of residuals by which all are judged; `None` where it is not seen.
-    pub process: Option<Process>,
+    /// The correlation of residuals by which all are judged, that of the best fit; `None` where it is not seen.
+    pub inflation: Option<Inflation>,
 }
 
 impl Fits {
@@ -59,43 +59,40 @@ pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> 
     };
     let fitted: Result<Vec<_>, _> = candidates.par_iter().map(one).collect();
     let fitted = fitted?;
-    let (process, costs) = costs(&fitted).unzip();
-    let costs = costs.unwrap_or_else(|| fitted.iter().map(|(_, fitted, _)| fitted.cost).collect());
-    let judged = fitted
-        .into_iter()
-        .zip(costs)
-        .map(|((options, mut fitted, linear), cost)| {
-            // A joint fit is in double whatever the options say.
-            let criteria = Criteria::new(fitted.samples, fitted.parameters, cost, Precision::F64);
-            let misfit = with_errors(&options, &mut fitted, linear);
-            Candidate {
-                options,
-                fitted,
-                criteria,
-                misfit,
-            }
-        });
+    let inflation = inflation_of_best(&fitted);
+    let judged = fitted.into_iter().map(|(options, mut fitted, linear)| {
+        // A joint fit is in double whatever the options say.
+        let criteria = Criteria::new(
+            fitted.samples,
+            inflation,
+            fitted.parameters,
+            fitted.cost,
+            Precision::F64,
+        );
+        let misfit = with_errors(&options, &mut fitted, linear);
+        Candidate {
+            options,
+            fitted,
+            criteria,
+            misfit,
+        }
+    });
     let candidates: Vec<Candidate> = judged.collect();
     let bic = |place: &usize| candidates[*place].criteria.bic;
     let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
     Ok(Fits {
         place: place.ok_or((scans.len(), FitError::Terms(0)))?,
         candidates,
-        process,
+        inflation,
     })
 }
 
 type Fitted = (FitOptions, JointFit, Option<Linear>);
 
-/// The costs by the correlation that the residuals of the best have, and that: as [`super::misfit::costs`] of one scan.
-fn costs(fitted: &[Fitted]) -> Option<(Process, Vec<f64>)> {
-    let linear: Option<Vec<&Linear>> = fitted.iter().map(|(_, _, linear)| linear.as_ref()).collect();
-    let linear = linear?;
-    let best = linear.iter().min_by(|a, b| a.scale.total_cmp(&b.scale))?;
-    let process = best.process()?;
-    let with_priors = linear.iter().zip(fitted);
-    let costs = with_priors.map(|(linear, (_, fitted, _))| linear.cost(process) + fitted.cost - fitted.of_samples);
-    Some((process, costs.collect()))
+/// By how much correlation makes samples count less: as [`super::misfit::inflation_of_best`] of one scan.
+fn inflation_of_best(fitted: &[Fitted]) -> Option<Inflation> {
+    let linear = fitted.iter().filter_map(|(_, _, linear)| linear.as_ref());
+    linear.min_by(|a, b| a.scale.total_cmp(&b.scale))?.inflation()
 }
 
 /// Puts what correlation makes of the errors in their place; none are left where the fit is exact, and of what is undetermined.

@@ -87,23 +87,37 @@ fn of_fit(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<(
     Some((all, places.map(|(place, _)| place).collect()))
 }
 
-/// The costs of several fits of the same samples by the correlation that the residuals of the best of them have, and that; `None` where independence is not refuted, or nothing can be said of a fit.
+/// What correlated residuals make of a comparison of fits of the same samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inflation {
+    /// How they are correlated.
+    pub process: Process,
+    /// So many samples tell as much as one of them would alone: by so much the correlation raises the variance of the parameters in the mean, at least 1.
+    pub factor: f64,
+}
+
+impl Inflation {
+    /// Of residuals with the rows of J; `None` where independence is not surely refuted.
+    ///
+    /// The factor is the mean trace of the sandwich, in units of the variance that the residuals have: what the penalty of a criterion grows by where its likelihood leaves correlation out (Varin and Vidoni 2005; Gao and Song 2010).
+    /// Lines count as independent, other than in errors: what all have in common is no chance, but what another model may explain.
+    pub fn of(all: &Residuals, degrees_of_freedom: usize) -> Option<Inflation> {
+        let process = process::likeliest(all, degrees_of_freedom, SURE)?;
+        let covariance = process::covariance(all, process, 1.0);
+        let trace: f64 = (0..all.columns).map(|k| covariance[k][k]).sum();
+        let factor = (trace / all.columns as f64).max(1.0);
+        factor.is_finite().then_some(Inflation { process, factor })
+    }
+}
+
+/// That of the best of several fits of the same samples, for all of them; `None` where independence is not refuted, or nothing can be said of it.
 ///
-/// Correlated residuals are as many independent ones after a linear map, by which each fit is taken to the optimum that it has there, linear in its parameters: so wandering residuals do not speak for a lobe as that many independent ones would.
-/// The correlation is that of one fit for all, as a poor model's own would take its misfit for noise.
-pub fn costs(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<(Process, Vec<f64>)> {
+/// A poor model's own would take its misfit for noise, and fits of equally many parameters would no longer be in the order of their costs (Burnham and Anderson 2002, section 2.5, take that of the richest model).
+pub fn inflation_of_best(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<Inflation> {
     let finite = fits.iter().filter(|fit| fit.uncertainty.scale.is_finite());
     let best = finite.min_by(|a, b| a.uncertainty.scale.total_cmp(&b.uncertainty.scale))?;
     let (all, _) = of_fit(samples, &best.view(), &best.uncertainty)?;
-    let process = process::likeliest(&all, best.uncertainty.degrees_of_freedom, SURE)?;
-    let cost = |fit: &&Outcome| {
-        let known = &fit.uncertainty;
-        let (all, _) = of_fit(samples, &fit.view(), known)?;
-        let rest = process::likelihood(&all, process, 1.0).1;
-        Some(rest * known.scale * known.scale + fit.prior_cost)
-    };
-    let costs: Option<Vec<f64>> = fits.iter().map(cost).collect();
-    Some((process, costs?))
+    Inflation::of(&all, best.uncertainty.degrees_of_freedom)
 }
 
 /// The mean over the processes that the residuals may be of, scaled to Student's t that they together come nearest to.

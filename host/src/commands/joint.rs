@@ -253,7 +253,10 @@ fn table(fits: &Fits) -> Vec<String> {
         line.trim_end().to_string()
     }));
     lines.push("  AICc and BIC above their least; * has the least BIC.".to_string());
-    lines.extend(fits.process.map(|process| format!("  {}", words::judged(&process))));
+    lines.extend(
+        fits.inflation
+            .map(|inflation| format!("  {}", words::judged(&inflation))),
+    );
     lines
 }
 

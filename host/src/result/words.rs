@@ -3,7 +3,7 @@
 use crate::analysis::choose::{Candidate, Choice};
 use crate::analysis::derived::Value;
 use crate::analysis::deviations::Verdict;
-use crate::analysis::misfit::process::Process;
+use crate::analysis::misfit::Inflation;
 use crate::analysis::proof::Proof;
 use crate::analysis::undetermined::Undetermined;
 use crate::engine::uncertainty::Misfit;
@@ -76,10 +76,11 @@ pub fn correlated(misfit: &Misfit) -> String {
 }
 
 /// By what correlation the candidates of a choice are judged.
-pub fn judged(process: &Process) -> String {
+pub fn judged(inflation: &Inflation) -> String {
     format!(
-        "residuals are correlated over {} deg, and the criteria count them so",
-        two(process.length.to_degrees())
+        "residuals are correlated over {} deg: the criteria count {} samples as one",
+        two(inflation.process.length.to_degrees()),
+        factor(inflation.factor)
     )
 }
 

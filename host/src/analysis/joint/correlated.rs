@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use crate::analysis::misfit::process::{self, Residuals};
-use crate::analysis::misfit::{EVIDENCE, Mean, SURE, rows};
+use crate::analysis::misfit::{EVIDENCE, Inflation, Mean, rows};
 use crate::analysis::unseen;
 use crate::engine::joint::JointFit;
 use crate::engine::uncertainty::Misfit;
@@ -81,14 +81,9 @@ impl Linear {
         })
     }
 
-    /// The likeliest process of the residuals; `None` where independence is not surely refuted.
-    pub fn process(&self) -> Option<process::Process> {
-        process::likeliest(&self.all, self.degrees_of_freedom, SURE)
-    }
-
-    /// The sum of squares that as many independent residuals would have, in units of the fit's cost.
-    pub fn cost(&self, process: process::Process) -> f64 {
-        process::likelihood(&self.all, process, 1.0).1 * self.scale * self.scale
+    /// By how much correlation makes the samples count less; `None` where independence is not surely refuted.
+    pub fn inflation(&self) -> Option<Inflation> {
+        Inflation::of(&self.all, self.degrees_of_freedom)
     }
 
     /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted.

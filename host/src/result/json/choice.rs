@@ -13,6 +13,8 @@ pub struct Selection {
     criterion: &'static str,
     /// The angle over which residuals are correlated, by which all are judged; null where they are not.
     correlated_over_deg: Option<f64>,
+    /// By how much that raises the variance of parameters, so that so many samples count as one; null where they are not.
+    variance_inflation: Option<f64>,
     sentence: String,
     candidates: Vec<JsonCandidate>,
 }
@@ -46,7 +48,8 @@ pub fn selection(choice: &Choice) -> Selection {
     };
     Selection {
         criterion: "bic",
-        correlated_over_deg: choice.process.map(|process| process.length.to_degrees()),
+        correlated_over_deg: choice.inflation.map(|inflation| inflation.process.length.to_degrees()),
+        variance_inflation: choice.inflation.map(|inflation| inflation.factor),
         sentence: words::choice(choice),
         candidates: choice.candidates.iter().map(candidate).collect(),
     }

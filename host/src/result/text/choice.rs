@@ -39,8 +39,8 @@ pub fn lines(choice: &Choice) -> Vec<String> {
         ""
     };
     lines.push(format!("    AICc and BIC above their least; * has the least BIC{test}"));
-    if let Some(process) = choice.process {
-        lines.push(format!("    {}", words::judged(&process)));
+    if let Some(inflation) = choice.inflation {
+        lines.push(format!("    {}", words::judged(&inflation)));
     }
     lines
 }

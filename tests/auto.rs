@@ -27,7 +27,6 @@ fn scene(model: &'static Model) -> Material {
     let second = model.place("rho_2").is_some();
     let value = |name: &str| match name {
         "rho_d" => 0.03,
-        "rho_s" if model.name == "sandford-robertson" => 0.1,
         "rho_s" => 2.0,
         "rho_v" => 0.3,
         "m" if second => 0.1,
@@ -40,8 +39,6 @@ fn scene(model: &'static Model) -> Material {
         "q" => 1.3,
         "tau" => 0.3,
         "Omega" => 0.1,
-        "b_g" => 0.3,
-        "e" => 0.1,
         "A" => 0.02,
         "B" => 1e-3,
         "g" => 1.7,

@@ -1,13 +1,13 @@
-//! Models of paints, and facets by their tilt: against 60-digit arithmetic, their energy, and at their limits.
+//! Models of paints, and facets by their tilt: against 60-digit arithmetic, and at their limits.
 
 use brdfit::engine::{FitOptions, Model as Compiled, fit};
 use brdfit_core::brdf::{ABSORBING, DIFFUSE, SURFACE};
-use brdfit_core::formula::{Directions, Formula, Own};
+use brdfit_core::formula::Own;
 use brdfit_core::geometry::{Geometry, Sample};
 use brdfit_core::lobes::{Beckmann, InAngle, VGroove};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
-use brdfit_core::models::{BeardMaxwell, SandfordRobertson};
+use brdfit_core::models::BeardMaxwell;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::ln_f;
 use brdfit_suite::corners::corners;
@@ -85,25 +85,6 @@ fn beard_maxwell(x: &[Big], at: &[Big]) -> Big {
     x[0].clone() / pi() + x[1].clone() * surface + x[2].clone() * volume
 }
 
-fn sandford_robertson(x: &[Big], at: &[Big]) -> Big {
-    let one = big(1.0);
-    let [cos_i, cos_s, sin_i, sin_s, tan2] = [&at[0], &at[1], &at[2], &at[3], &at[5]];
-    let (b2, e2) = (squared(&x[2]), squared(&x[3]));
-    let rest = one.clone() - b2.clone();
-    let mean = (one.clone() + b2.clone() / rest.clone() * b2.ln()) / rest;
-    let g = |cos: &Big, sin: &Big| one.clone() / (one.clone() + b2.clone() * squared(sin) / squared(cos));
-    let diffuse = x[0].clone() / pi() * g(cos_i, sin_i) * g(cos_s, sin_s) / squared(&mean);
-    let cos2_h = one.clone() / (one.clone() + tan2.clone());
-    let h = one.clone() / squared(&(e2.clone() * cos2_h.clone() + one.clone() - cos2_h));
-    let round = one.clone() - e2.clone();
-    let across = squared(&round) * squared(cos_i);
-    let two_e2 = big(2.0) * e2.clone();
-    let root = (across.clone() + big(4.0) * e2).sqrt();
-    let normal = (round * cos_i.clone() + (two_e2.clone() + across) / root) / two_e2;
-    let reflectance = one.clone() - (one.clone() - x[1].clone()) * g(cos_i, sin_i);
-    diffuse + reflectance * h / (big(4.0) * pi() * normal * cos_s.clone())
-}
-
 /// Directions, radians: specular ones, near them, far from them, grazing, and out of plane.
 fn directions() -> Vec<[f64; 3]> {
     let pi = std::f64::consts::PI;
@@ -179,12 +160,6 @@ const BEARD_MAXWELL: [[f64; 7]; 4] = [
     [0.1, 30.0, 0.01, 0.02, 1.65, 0.01, 10.0],
     [0.0, 1.0, 0.2, 0.5, 30.0, 1.0, 1.0],
 ];
-const SANDFORD_ROBERTSON: [[f64; 4]; 4] = [
-    [0.03, 0.1, 0.3, 0.1],
-    [0.9, 0.05, 0.001, 0.9],
-    [0.01, 0.9, 0.8, 0.01],
-    [0.2, 0.001, 0.1, 0.3],
-];
 
 fn all<R: Real>() -> [f64; 2] {
     let tan2 = |angles: [R; 3], _: [R; 6]| {
@@ -198,7 +173,6 @@ fn all<R: Real>() -> [f64; 2] {
     let each = [
         worst::<R, TorranceSparrow, 5, 6>(&TORRANCE_SPARROW, tan2, torrance_sparrow),
         worst::<R, Own<BeardMaxwell>, 7, 8>(&BEARD_MAXWELL, same, beard_maxwell),
-        worst::<R, Own<SandfordRobertson>, 4, 8>(&SANDFORD_ROBERTSON, same, sandford_robertson),
     ];
     println!("{each:?}");
     [0, 1].map(|k| each.iter().map(|one| one[k]).fold(0.0, f64::max))
@@ -214,39 +188,10 @@ fn values_and_derivatives_of_sixty_digits() {
     check(single[1], tolerance::PAINTS_GRADIENT_F32);
 }
 
-/// What is not emitted is reflected, at every angle of incidence: that is what the means G and H are for.
-#[test]
-fn sandford_and_robertson_lose_nothing() {
-    const STEPS: u32 = 600;
-    let [rho_d, rho_s, b, e] = [0.2, 0.1, 0.4, 0.3];
-    let mut worst = 0.0f64;
-    for theta_i in [0.0, 0.7, 1.3] {
-        let mut reflectance = 0.0;
-        for ring in 0..STEPS {
-            // Evenly in cos theta_s, so in solid angle.
-            let cos_s = (f64::from(ring) + 0.5) / f64::from(STEPS);
-            let theta_s = libm::acos(cos_s);
-            for turn in 0..STEPS / 2 {
-                let delta_phi = (f64::from(turn) + 0.5) * 2.0 * f64::PI / f64::from(STEPS);
-                let at = Directions::new(theta_i, theta_s, delta_phi).expect("above the horizon");
-                reflectance += cos_s * SandfordRobertson::brdf(&[rho_d, rho_s, b, e], &at);
-            }
-        }
-        reflectance *= 2.0 * f64::PI / f64::from(STEPS * STEPS / 2);
-        let g = 1.0 / (1.0 + b * b * libm::pow(libm::tan(theta_i), 2.0));
-        let mean = (1.0 + b * b / (1.0 - b * b) * libm::log(b * b)) / (1.0 - b * b);
-        let epsilon = (1.0 - rho_s) * mean - rho_d;
-        worst = worst.max((reflectance - (1.0 - epsilon * g / mean)).abs());
-    }
-    check(worst, tolerance::SANDFORD_ROBERTSON_ENERGY);
-}
-
 #[test]
 fn no_corner_of_the_domain_overflows() {
     corners::<f64, BeardMaxwell, 7>(&directions());
     corners::<f32, BeardMaxwell, 7>(&directions());
-    corners::<f64, SandfordRobertson, 4>(&directions());
-    corners::<f32, SandfordRobertson, 4>(&directions());
 }
 
 /// With tilts so small that they are slopes, Torrance and Sparrow's is Cook and Torrance's.
@@ -264,13 +209,11 @@ fn small_tilts_are_slopes() {
     }
 }
 
-/// A model without weights, too, is found again: its candidates are ranked by their cost.
 #[test]
 fn searches_find_the_parameters_again() {
     for (name, cases) in [
         ("torrance-sparrow", TORRANCE_SPARROW.map(|x| x.to_vec()).to_vec()),
         ("beard-maxwell", BEARD_MAXWELL.map(|x| x.to_vec()).to_vec()),
-        ("sandford-robertson", SANDFORD_ROBERTSON.map(|x| x.to_vec()).to_vec()),
     ] {
         let model = Compiled::find(name).expect("a model");
         for mut truth in cases {

@@ -6,13 +6,11 @@ mod abg;
 mod beard_maxwell;
 mod harvey_shack;
 mod k_correlation;
-mod sandford_robertson;
 
 pub use abg::Abg;
 pub use beard_maxwell::BeardMaxwell;
 pub use harvey_shack::HarveyShack;
 pub use k_correlation::{KCorrelation, KCorrelation2};
-pub use sandford_robertson::SandfordRobertson;
 
 use crate::model::{Parameter, Role};
 

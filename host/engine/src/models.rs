@@ -2,9 +2,11 @@
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
 use brdfit_core::formula::Own;
-use brdfit_core::lobes::{Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove};
+use brdfit_core::lobes::{
+    Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove,
+};
 use brdfit_core::microfacet::Microfacet;
-use brdfit_core::models::{Abg, BeardMaxwell, HarveyShack, KCorrelation, KCorrelation2, SandfordRobertson};
+use brdfit_core::models::{Abg, BeardMaxwell, HarveyShack, KCorrelation, KCorrelation2};
 
 use crate::bind::{searches, set};
 use crate::compiled::Compiled;
@@ -18,7 +20,7 @@ use crate::simd::{AVX2, AVX512, EVERY, SCALAR};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 20] = [
+pub static MODELS: [Model; 19] = [
     Model {
         name: PAPER,
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -81,11 +83,6 @@ pub static MODELS: [Model; 20] = [
         "walter",
         "Walter's reflection of a dielectric: GGX, Smith masking, no volume lobe, kappa = 0; Lambert's floor is added",
         "Walter, Marschner, Li and Torrance 2007, Eq. 20, 33 and 34",
-    ),
-    Model::own::<Own<SandfordRobertson>, 4, 8>(
-        "sandford-robertson",
-        "for paints, in the manner of Sandford and Robertson: energy that is not emitted goes into a diffuse and an elliptical lobe",
-        "after Sandford and Robertson 1985; the form was not compared with their paper, its energy is exact",
     ),
     Model::own::<Own<BeardMaxwell>, 7, 8>(
         "beard-maxwell",

@@ -9,10 +9,11 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// What is within another model: each of the second becomes the first in some place of its bounds.
-const WITHIN: [(&str, &[&str]); 7] = [
+const WITHIN: [(&str, &[&str]); 8] = [
     ("beckmann", &["beckmann-own-slope", "beckmann-second"]),
     ("cook-torrance", &["beckmann", "beckmann-own-slope", "beckmann-second"]),
-    ("walter", &["ggx-smith"]),
+    ("walter", &["ggx-smith", "ggx-smith-second"]),
+    ("ggx-smith", &["ggx-smith-second"]),
     (
         "ggx",
         &["ggx-own-slope", "ggx-second", "hyper-cauchy", "hyper-cauchy-own-slope"],

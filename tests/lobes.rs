@@ -107,6 +107,7 @@ fn every_model_finds_its_own_parameters() {
         recovered::<Microfacet<TWO>, 8, 6>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
         recovered::<Microfacet<TWO, Ggx>, 8, 6>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
         recovered::<Microfacet<{ ALL | TAIL }, HyperCauchy>, 7, 6>([0.05, 2.0, 0.3, 0.3, 2.0, 0.5, 3.0]),
+        recovered::<Microfacet<TWO, Ggx, Smith>, 8, 8>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
     ];
     println!("costs {costs:?}");
     check(costs.into_iter().fold(0.0, f64::max), tolerance::LOBES_FIT);

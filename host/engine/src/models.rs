@@ -20,7 +20,7 @@ use crate::simd::{AVX2, AVX512, EVERY, SCALAR};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 19] = [
+pub static MODELS: [Model; 20] = [
     Model {
         name: PAPER,
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -54,6 +54,11 @@ pub static MODELS: [Model; 19] = [
         EQ_5,
     ),
     microfacet::<{ ALL | SECOND }, Ggx, VGroove, 8, 6>("ggx-second", "GGX with a second surface lobe", EQ_5),
+    microfacet::<{ ALL | SECOND }, Ggx, Smith, 8, 8>(
+        "ggx-smith-second",
+        "GGX with a second surface lobe, Smith masking",
+        "Walter et al. 2007, Eq. 33 and 34",
+    ),
     microfacet::<{ ALL | TAIL }, HyperCauchy, VGroove, 7, 6>(
         "hyper-cauchy",
         "a distribution with a free tail, V-groove masking",

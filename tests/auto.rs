@@ -16,7 +16,13 @@ const WITHIN: [(&str, &[&str]); 8] = [
     ("ggx-smith", &["ggx-smith-second"]),
     (
         "ggx",
-        &["ggx-own-slope", "ggx-second", "hyper-cauchy", "hyper-cauchy-own-slope"],
+        &[
+            "ggx-own-slope",
+            "ggx-second",
+            "ggx-mirrors",
+            "hyper-cauchy",
+            "hyper-cauchy-own-slope",
+        ],
     ),
     ("ggx-own-slope", &["hyper-cauchy-own-slope"]),
     ("hyper-cauchy", &["hyper-cauchy-own-slope"]),
@@ -38,6 +44,7 @@ fn scene(model: &'static Model) -> Material {
         "rho_2" => 3.0,
         "m_2" => 0.5,
         "q" => 1.3,
+        "rho_m" => 0.2,
         "tau" => 0.3,
         "Omega" => 0.1,
         "A" => 0.02,

@@ -1,6 +1,6 @@
 //! Models put together from other lobes: against 60-digit values, and fitted to their own data.
 
-use brdfit_core::brdf::{ALL, OWN_SLOPE, SECOND, TAIL};
+use brdfit_core::brdf::{ALL, MIRRORS, OWN_SLOPE, SECOND, TAIL};
 use brdfit_core::geometry::{Block, Geometry, LANES, Sample};
 use brdfit_core::lm::Options;
 use brdfit_core::lobes::{Beckmann, Ggx, HyperCauchy, NoMasking, Smith, VGroove};
@@ -108,6 +108,7 @@ fn every_model_finds_its_own_parameters() {
         recovered::<Microfacet<TWO, Ggx>, 8, 6>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
         recovered::<Microfacet<{ ALL | TAIL }, HyperCauchy>, 7, 6>([0.05, 2.0, 0.3, 0.3, 2.0, 0.5, 3.0]),
         recovered::<Microfacet<TWO, Ggx, Smith>, 8, 8>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
+        recovered::<Microfacet<{ ALL | MIRRORS }, Ggx>, 7, 6>([0.05, 2.0, 0.3, 0.3, 2.0, 0.5, 0.2]),
     ];
     println!("costs {costs:?}");
     check(costs.into_iter().fold(0.0, f64::max), tolerance::LOBES_FIT);
@@ -183,4 +184,34 @@ fn any_tail_has_its_digits() {
     let (double, single) = (tail::<f64>(), tail::<f32>());
     check(double[0].max(single[0]), tolerance::TAIL_VALUE);
     check(double[1].max(single[1]), tolerance::TAIL_DERIVATIVE);
+}
+
+/// Mirrors add to rho_s F of the surface lobe what does not depend on the angle: with n so large that F is 1, rho_s and rho_m are one weight, by lanes and one by one.
+#[test]
+fn mirrors_are_facets_that_reflect_everything() {
+    type Mirrors = Microfacet<{ ALL | MIRRORS }, Ggx>;
+    let mut worst = [0.0f64; 2];
+    for sample in samples(30.0, |_| 1.0) {
+        let geometry = Geometry::new(sample.theta_i, sample.theta_s, sample.delta_phi).expect("valid angles");
+        let plain = |rho_s: f64| {
+            let x = [0.05, rho_s, 0.0, 0.3, 1e15, 0.0];
+            ln_f::<f64, Microfacet<ALL, Ggx>, 6, 6>(&x, geometry.into())
+        };
+        let at = |rho_m: f64| {
+            let x = [0.05, 0.5, 0.0, 0.3, 1e15, 0.0, rho_m];
+            ln_f::<f64, Mirrors, 7, 6>(&x, geometry.into())
+        };
+        let ((one, by_one), (two, by_two)) = (plain(2.0), at(1.5));
+        worst[0] = worst[0].max((one - two).abs()).max((by_one[1] - by_two[6]).abs());
+        // With an index of its own the derivative is that of differences.
+        let moved = |rho_m: f64| {
+            let x = [0.05, 2.0, 0.3, 0.3, 2.0, 0.25, rho_m];
+            ln_f::<f64, Mirrors, 7, 6>(&x, geometry.into())
+        };
+        let slope = (moved(0.2 + 1e-5).0 - moved(0.2 - 1e-5).0) / 2e-5;
+        worst[1] = worst[1].max((moved(0.2).1[6] - slope).abs());
+    }
+    println!("mirrors {worst:?}");
+    check(worst[0], tolerance::MIRRORS);
+    check(worst[1], tolerance::MIRRORS_SLOPE);
 }

@@ -12,9 +12,11 @@ use crate::model::{Rows, WEIGHTS, Want};
 use crate::pack::Pack;
 use crate::real::Real;
 
-pub use terms::{ABSORBING, ALL, DIFFUSE, NAMES, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME, has, parameters, slot};
+pub use terms::{
+    ABSORBING, ALL, DIFFUSE, MIRRORS, NAMES, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME, has, parameters, slot,
+};
 pub(crate) use terms::{EVERY, get, place, places};
-use terms::{M_2, M_V, Q, RHO_2};
+use terms::{M_2, M_V, Q, RHO_2, RHO_M};
 
 /// The six parameters of Eq. 14, all dimensionless; those of absent terms are 0, and n is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +96,8 @@ const fn slope(terms: u8, lobe: usize) -> usize {
 pub struct Brdf<R, const TERMS: u8, D = Beckmann, M = VGroove> {
     rho_d_pi: R,
     rho: [R; LOBES],
+    /// Weight of the mirrors among the facets of the first lobe.
+    rho_m: R,
     inverse_m: [R; LOBES],
     inverse_m2: [R; LOBES],
     q: R,
@@ -130,6 +134,7 @@ impl<R: Real, const TERMS: u8> Brdf<R, TERMS> {
         Self::build(
             rho_d,
             [rho_s, rho_v, R::ZERO],
+            R::ZERO,
             [m; LOBES],
             R::ONE,
             Index::new(n, kappa * kappa),
@@ -160,6 +165,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         Self::build(
             value(0, R::ZERO),
             [value(1, R::ZERO), value(2, R::ZERO), value(RHO_2, R::ZERO)],
+            value(RHO_M, R::ZERO),
             [m(0), m(1), m(2)],
             value(Q, R::ONE),
             Index::new(value(4, R::ONE), value(5, R::ZERO)),
@@ -167,7 +173,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
     }
 
     #[cfg_attr(not(target_os = "none"), inline(always))]
-    fn build(rho_d: R, rho: [R; LOBES], m: [R; LOBES], q: R, index: Index<R>) -> Self {
+    fn build(rho_d: R, rho: [R; LOBES], rho_m: R, m: [R; LOBES], q: R, index: Index<R>) -> Self {
         let when = |present: bool, x: R| if present { x } else { R::ZERO };
         let rho_d = when(TERMS & DIFFUSE != 0, rho_d);
         let rho = [
@@ -181,7 +187,8 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             Index::new(index.n, R::ZERO)
         };
         let shines = |rho: R| rho > R::TINY && !index.is_vacuum();
-        let shining = [shines(rho[0]), shines(rho[1]), shines(rho[2])];
+        let rho_m = when(TERMS & MIRRORS != 0, rho_m);
+        let shining = [shines(rho[0]) || rho_m > R::TINY, shines(rho[1]), shines(rho[2])];
         // Lobes that share a slope share one division.
         let first = R::ONE / m[0];
         let inverse_m = [
@@ -193,6 +200,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         Brdf {
             rho_d_pi: rho_d / R::PI,
             rho,
+            rho_m,
             inverse_m,
             inverse_m2: [
                 inverse_m[0] * inverse_m[0],
@@ -313,7 +321,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
 
     /// ln f of `G` lanes, those of [`Pack::gather`], and if `GRADIENT` its derivatives; `K` is `G` times the number of lobes.
     ///
-    /// With t = tan^2 theta_h / m^2, f = rho_d/pi + sum over lobes of rho F factor g(t) / m^2.
+    /// With t = tan^2 theta_h / m^2, f = rho_d/pi + sum over lobes of rho F factor g(t) / m^2; mirrors of the first lobe add rho_m to its rho F.
     /// Where no diffuse term keeps that from underflow, the largest exponent (`shift`) is taken out of the sum, so ln f stays right where D_b is outside the range of this type.
     #[inline(always)]
     pub(crate) fn write<
@@ -339,7 +347,10 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         let unit_lobes = self.unit_lobes::<K, G, L, C>(block, 0, shift, lane);
         let fresnel = self.reflect::<K, KP, G, L, C>(block, 0, lane, GRADIENT);
         let d_rho = unit_lobes.f * fresnel.f;
-        let term = rho * d_rho;
+        let mut term = rho * d_rho;
+        if TERMS & MIRRORS != 0 {
+            term = term + Self::of_lobes::<K, G>(&[self.rho_m, R::ZERO, R::ZERO], 0) * unit_lobes.f;
+        }
         let f = sum_lobes(factor * self.rho_d_pi, term).map(|f| f.max(R::TINY));
         rows.ln_f = shift + f.ln();
         if !GRADIENT {
@@ -359,6 +370,9 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         for place in 0..K / G {
             let of_lobe = Pack::<R, G>::from_fn(|k| d_rho.0[place * G + k]);
             set(WEIGHT[lobe(TERMS, place)], of_lobe * share);
+        }
+        if TERMS & MIRRORS != 0 {
+            set(RHO_M, Pack::from_fn(|k| unit_lobes.f.0[k]) * share);
         }
         // m d ln(f of a lobe) / dm, over 2.
         let mut steepness = D::fall(unit_lobes.t, self.q) - Pack::splat(R::ONE);
@@ -402,6 +416,11 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             if let Some(column) = columns.get_mut(diffuse + place) {
                 *column = Pack::from_fn(|k| lobes.0[place * G + k]);
             }
+        }
+        if TERMS & MIRRORS != 0
+            && let Some(column) = columns.get_mut(diffuse + K / G)
+        {
+            *column = Pack::from_fn(|k| unit_lobes.f.0[k]);
         }
         columns
     }

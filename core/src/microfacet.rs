@@ -47,6 +47,7 @@ pub const PARAMETERS: [Parameter; EVERY] = [
         .bounds(1.01, 50.0)
         .domain(1.001, 1000.0)
         .spread(1.1, 10.0),
+    Parameter::new("rho_m", "ρ_m", Role::Weight, 100.0).what("weight of facets that are mirrors"),
 ];
 
 const SLOPE_OF_FACETS: Parameter = Parameter::new("m", "m", Role::Slope, 10.0)

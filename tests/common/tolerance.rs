@@ -291,6 +291,10 @@ pub const PAINTS_F32: Tolerance = Tolerance(5.0);
 pub const PAINTS_GRADIENT_F32: Tolerance = Tolerance(7.0);
 /// |beta - beta_0| near the specular direction, in epsilons of f32; measured 0.95.
 pub const SHIFT_F32: Tolerance = Tolerance(1.5);
+/// Mirrors among the facets against a surface whose F is 1, in ln f and its derivative; measured 3.6e-15.
+pub const MIRRORS: Tolerance = Tolerance(5e-15);
+/// Their derivative from that of differences; measured 2.8e-10.
+pub const MIRRORS_SLOPE: Tolerance = Tolerance(4e-10);
 /// ln f of a distribution with a free tail against 60 digits, in epsilons of the largest logarithm on the way; measured 7.27.
 pub const TAIL_VALUE: Tolerance = Tolerance(10.0);
 /// Its derivative by q, in epsilons of its size; measured 1.57.

@@ -2,7 +2,7 @@
 //!
 //! The formulas and their order are those of [`Brdf::write`], and so are the bits.
 
-use super::{Brdf, LOBES, M_2, M_V, Q, RHO_2, SLOPE, has, lobe, lobes, pair, slope, slot};
+use super::{Brdf, LOBES, M_2, M_V, MIRRORS, Q, RHO_2, RHO_M, SLOPE, has, lobe, lobes, pair, slope, slot};
 use crate::geometry::Block;
 use crate::lobes::{Distribution, Masking};
 use crate::model::Want;
@@ -33,14 +33,18 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
         let mut f = factor * self.rho_d_pi;
         let mut d_rho = [R::ZERO; LOBES];
         let mut by_slope = [R::ZERO; LOBES];
-        let (mut by_n2, mut by_kappa2, mut by_q) = (R::ZERO, R::ZERO, R::ZERO);
+        let (mut by_n2, mut by_kappa2, mut by_q, mut by_mirrors) = (R::ZERO, R::ZERO, R::ZERO, R::ZERO);
         for place in 0..lobes(TERMS) {
             let lobe = lobe(TERMS, place);
             let unit_lobes = self.unit_lobes::<1, 1, L, C>(block, place, Pack([shift]), lane);
             let cos_theta_d = block.columns[2 + pair(lobe)][lane];
             let fresnel = self.index.reflect(Pack([cos_theta_d]), gradient);
             d_rho[lobe] = unit_lobes.f.0[0] * fresnel.f.0[0];
-            let term = self.rho[lobe] * d_rho[lobe];
+            let mut term = self.rho[lobe] * d_rho[lobe];
+            if TERMS & MIRRORS != 0 && place == 0 {
+                by_mirrors = unit_lobes.f.0[0];
+                term += self.rho_m * by_mirrors;
+            }
             f += term;
             if gradient {
                 let mut steepness = D::fall(unit_lobes.t, self.q).0[0] - R::ONE;
@@ -64,6 +68,7 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             set::<1, TERMS, R, P>(row, d_rho[0] * share);
             set::<2, TERMS, R, P>(row, d_rho[1] * share);
             set::<RHO_2, TERMS, R, P>(row, d_rho[2] * share);
+            set::<RHO_M, TERMS, R, P>(row, by_mirrors * share);
             if !gradient {
                 return R::ZERO;
             }

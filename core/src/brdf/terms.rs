@@ -18,17 +18,20 @@ pub const OWN_SLOPE: u8 = 16;
 pub const SECOND: u8 = 32;
 /// The distribution has the exponent `q` of its tail ([`crate::lobes::HyperCauchy`]).
 pub const TAIL: u8 = 64;
+/// Facets of the surface lobe are mirrors too, of weight `rho_m`: what they reflect does not depend on the angle, as of flakes of metal in a paint.
+pub const MIRRORS: u8 = 128;
 
 /// The names of Eq. 14's parameters, in the order used everywhere.
 pub const NAMES: [&str; 6] = ["rho_d", "rho_s", "rho_v", "m", "n", "kappa"];
 
-/// Parameters that a microfacet model can have: the six of [`NAMES`], then `m_v`, `rho_2`, `m_2` and `q`.
-pub(crate) const EVERY: usize = 10;
-/// Places of `m_v`, `rho_2`, `m_2` and `q` among them.
+/// Parameters that a microfacet model can have: the six of [`NAMES`], then `m_v`, `rho_2`, `m_2`, `q` and `rho_m`.
+pub(crate) const EVERY: usize = 11;
+/// Places of `m_v`, `rho_2`, `m_2`, `q` and `rho_m` among them.
 pub(super) const M_V: usize = 6;
 pub(super) const RHO_2: usize = 7;
 pub(super) const M_2: usize = 8;
 pub(super) const Q: usize = 9;
+pub(super) const RHO_M: usize = 10;
 
 /// Is parameter `index`, in the order of [`NAMES`], part of `terms`?
 #[inline(always)]
@@ -46,7 +49,8 @@ const fn present(terms: u8) -> u32 {
     let own = if terms & OWN_SLOPE != 0 { 1 << M_V } else { 0 };
     let second = if terms & SECOND != 0 { 1 << RHO_2 | 1 << M_2 } else { 0 };
     let tail = if terms & TAIL != 0 { 1 << Q } else { 0 };
-    weights | m_and_n | kappa | own | second | tail
+    let mirrors = if terms & MIRRORS != 0 { 1 << RHO_M } else { 0 };
+    weights | m_and_n | kappa | own | second | tail | mirrors
 }
 
 /// Number of parameters of `terms`.

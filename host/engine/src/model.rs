@@ -82,7 +82,7 @@ impl Model {
         let no_lobes = self.terms != 0 && terms & (SURFACE | VOLUME) == 0;
         match self.parameters[place].name {
             "rho_d" => missing & DIFFUSE != 0,
-            "rho_s" | "rho_2" | "m_2" => missing & SURFACE != 0,
+            "rho_s" | "rho_2" | "m_2" | "rho_m" => missing & SURFACE != 0,
             "rho_v" | "m_v" => missing & VOLUME != 0,
             "kappa" => missing & ABSORBING != 0 || no_lobes,
             _ => no_lobes,

@@ -1,6 +1,6 @@
 //! Every model that is compiled in, that of the paper first.
 
-use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
+use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, MIRRORS, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
 use brdfit_core::formula::Own;
 use brdfit_core::lobes::{
     Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove,
@@ -20,7 +20,7 @@ use crate::simd::{AVX2, AVX512, EVERY, SCALAR};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 20] = [
+pub static MODELS: [Model; 21] = [
     Model {
         name: PAPER,
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -58,6 +58,11 @@ pub static MODELS: [Model; 20] = [
         "ggx-smith-second",
         "GGX with a second surface lobe, Smith masking",
         "Walter et al. 2007, Eq. 33 and 34",
+    ),
+    microfacet::<{ ALL | MIRRORS }, Ggx, VGroove, 7, 6>(
+        "ggx-mirrors",
+        "GGX with mirrors among the facets of its surface lobe, as flakes of metal are",
+        EQ_5,
     ),
     microfacet::<{ ALL | TAIL }, HyperCauchy, VGroove, 7, 6>(
         "hyper-cauchy",

@@ -3,7 +3,7 @@
 use brdfit_core::brdf::{ALL, MIRRORS, OWN_SLOPE, SECOND, TAIL};
 use brdfit_core::geometry::{Block, Geometry, LANES, Sample};
 use brdfit_core::lm::Options;
-use brdfit_core::lobes::{Beckmann, Ggx, HyperCauchy, NoMasking, Smith, VGroove};
+use brdfit_core::lobes::{Beckmann, Distribution, Exponential, Ggx, HyperCauchy, NoMasking, Smith, VGroove};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::Model;
 use brdfit_core::real::Real;
@@ -109,6 +109,7 @@ fn every_model_finds_its_own_parameters() {
         recovered::<Microfacet<{ ALL | TAIL }, HyperCauchy>, 7, 6>([0.05, 2.0, 0.3, 0.3, 2.0, 0.5, 3.0]),
         recovered::<Microfacet<TWO, Ggx, Smith>, 8, 8>([0.05, 2.0, 0.3, 0.1, 2.0, 0.5, 1.0, 0.4]),
         recovered::<Microfacet<{ ALL | MIRRORS }, Ggx>, 7, 6>([0.05, 2.0, 0.3, 0.3, 2.0, 0.5, 0.2]),
+        recovered::<Microfacet<ALL, Exponential>, 6, 6>(six),
     ];
     println!("costs {costs:?}");
     check(costs.into_iter().fold(0.0, f64::max), tolerance::LOBES_FIT);
@@ -214,4 +215,37 @@ fn mirrors_are_facets_that_reflect_everything() {
     println!("mirrors {worst:?}");
     check(worst[0], tolerance::MIRRORS);
     check(worst[1], tolerance::MIRRORS_SLOPE);
+}
+
+/// Exponential slopes are a distribution: g is 1 in the sum over t, falls as it says, and its logarithm is a straight line over the slope.
+#[test]
+fn exponential_slopes_are_a_distribution() {
+    use brdfit_core::pack::Pack;
+    let g = |t: f64| Exponential::shape::<f64, 1>(Pack([t]), Pack([0.0]), 1.0).0[0];
+    // Over u = sqrt(t), by Simpson's rule.
+    let steps = 20_000;
+    let (step, mut sum) = (60.0 / f64::from(steps), 0.0);
+    for k in 0..=steps {
+        let u = step * f64::from(k);
+        let factor = if k == 0 || k == steps {
+            1.0
+        } else if k % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        };
+        sum += factor * 2.0 * u * g(u * u) * step / 3.0;
+    }
+    let mut worst = 0.0f64;
+    for t in [1e-8, 1e-3, 0.5, 3.0, 400.0] {
+        let exact = libm::exp(-libm::sqrt(t)) / 2.0;
+        worst = worst.max((g(t) / exact - 1.0).abs());
+        let fall = Exponential::fall::<f64, 1>(Pack([t]), 1.0).0[0];
+        let slope = -(libm::log(g(t * 1.0001)) - libm::log(g(t / 1.0001))) / (2.0 * libm::log(1.0001));
+        worst = worst.max((fall - slope).abs() / (1.0 + fall) * 1e-8);
+    }
+    println!("exponential {:e} {worst:e}", sum - 1.0);
+    check((sum - 1.0).abs(), tolerance::EXPONENTIAL_SUM);
+    check(worst, tolerance::EXPONENTIAL_VALUE);
+    assert_eq!(g(1e12), 0.0);
 }

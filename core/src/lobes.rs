@@ -61,3 +61,22 @@ pub trait Masking<D, const C: usize>: Copy {
         (Pack::splat(R::ONE), Pack::splat(R::ZERO))
     }
 }
+
+/// Slopes that fall exponentially: `g(t) = exp(-sqrt(t)) / 2`, between Beckmann and GGX in its tail, with a peak as sharp as a cone's.
+///
+/// The exponential power distribution `p exp(-t^p) / Gamma(1/p)` of Brady et al. 2014 and of Holzschuch and Pacanowski 2017 at p = 1/2; p = 1 is Beckmann. The root mean square of the slopes is sqrt(6) m.
+#[derive(Clone, Copy, Debug)]
+pub struct Exponential;
+
+impl Distribution for Exponential {
+    #[inline(always)]
+    fn shape<R: Real, const K: usize>(t: Pack<R, K>, _shift: Pack<R, K>, _q: R) -> Pack<R, K> {
+        let exponent = t.map(|t| -t.sqrt());
+        exponent.zip(exponent.exp(), |x, e| if x < R::LEAST_EXPONENT { R::ZERO } else { e }) * R::of(0.5)
+    }
+
+    #[inline(always)]
+    fn fall<R: Real, const K: usize>(t: Pack<R, K>, _q: R) -> Pack<R, K> {
+        t.map(|t| t.sqrt()) * R::of(0.5)
+    }
+}

@@ -295,6 +295,10 @@ pub const SHIFT_F32: Tolerance = Tolerance(1.5);
 pub const MIRRORS: Tolerance = Tolerance(5e-15);
 /// Their derivative from that of differences; measured 2.8e-10.
 pub const MIRRORS_SLOPE: Tolerance = Tolerance(4e-10);
+/// Exponential slopes: their sum over t less 1; measured 1.4e-12.
+pub const EXPONENTIAL_SUM: Tolerance = Tolerance(2e-12);
+/// Their g, relative; measured 2.2e-16.
+pub const EXPONENTIAL_VALUE: Tolerance = Tolerance(3e-16);
 /// ln f of a distribution with a free tail against 60 digits, in epsilons of the largest logarithm on the way; measured 7.27.
 pub const TAIL_VALUE: Tolerance = Tolerance(10.0);
 /// Its derivative by q, in epsilons of its size; measured 1.57.

@@ -3,7 +3,7 @@
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, MIRRORS, OWN_SLOPE, SECOND, SURFACE, TAIL, VOLUME};
 use brdfit_core::formula::Own;
 use brdfit_core::lobes::{
-    Beckmann, Distribution, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove,
+    Beckmann, Distribution, Exponential, Ggx, HyperCauchy, InAngle, Masking, NoMasking, Smith, VGroove,
 };
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::models::{Abg, BeardMaxwell, HarveyShack, KCorrelation, KCorrelation2};
@@ -20,7 +20,7 @@ use crate::simd::{AVX2, AVX512, EVERY, SCALAR};
 const EQ_5: &str = "Eq. 5 of Bishop, Butler and Marciniak 2021";
 
 /// `MODELS[0]` is Eq. 14.
-pub static MODELS: [Model; 21] = [
+pub static MODELS: [Model; 22] = [
     Model {
         name: PAPER,
         what: "Eq. 14: Beckmann, V-groove masking",
@@ -63,6 +63,11 @@ pub static MODELS: [Model; 21] = [
         "ggx-mirrors",
         "GGX with mirrors among the facets of its surface lobe, as flakes of metal are",
         EQ_5,
+    ),
+    microfacet::<ALL, Exponential, VGroove, 6, 6>(
+        "exponential",
+        "slopes that fall exponentially, V-groove masking",
+        "Holzschuch and Pacanowski 2017",
     ),
     microfacet::<{ ALL | TAIL }, HyperCauchy, VGroove, 7, 6>(
         "hyper-cauchy",

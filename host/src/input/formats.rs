@@ -1,5 +1,6 @@
 //! The table of formats: one module each, named here and nowhere else.
 
+mod alta;
 mod astm;
 mod bird;
 mod fred;
@@ -29,7 +30,7 @@ use crate::error::{Error, shown};
 use crate::plain::some_of;
 
 /// All formats in the order in which they are tried; a table is what is left, and comes last.
-static ALL: [Format; 15] = [
+static ALL: [Format; 16] = [
     merl::FORMAT,
     rgl::FORMAT,
     ssdd::FORMAT,
@@ -39,6 +40,7 @@ static ALL: [Format; 15] = [
     bird::FORMAT,
     astm::FORMAT,
     fred::FORMAT,
+    alta::FORMAT,
     lumos::FORMAT,
     pabopto::FORMAT,
     zemax::FORMAT,

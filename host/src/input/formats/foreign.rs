@@ -67,10 +67,15 @@ pub fn named(file: &[u8]) -> Option<Error> {
             "this looks like a BSDF of RPC Photonics, which is not read".to_string(),
             "export it as CSV with the columns theta_i, theta_s, delta_phi and brdf",
         )
-    } else if begins("#DIM") {
+    } else if head.contains("InitAbgScatter") {
         (
-            "this looks like data of ALTA, which are not read".to_string(),
-            "write it as CSV with the columns theta_i, theta_s, delta_phi and brdf",
+            "this is a script of FRED that makes an ABg scatter model, and no measurement".to_string(),
+            "give the measurement that it was fitted to",
+        )
+    } else if head.contains("Name\tWave\tAngle\tA\tB\tg") {
+        (
+            "this is an ABg scatter profile of OpticStudio, and no measurement".to_string(),
+            "give the measurement that it was fitted to",
         )
     } else if begins("analytic") && head.contains("::begin") {
         (
@@ -168,7 +173,14 @@ mod tests {
             (b"{\"a\": 1}", "neither a BiRD nor an OpenMATERIAL"),
             (b"[{\"parameters\": {\"rho_d\": 1}}]", "a result of brdfit"),
             (b"!! x\n!! y\n1 2 3\n", "RPC Photonics"),
-            (b"#DIM 2 3\n", "ALTA"),
+            (
+                b"' x\nSub Main\n    Dim lobe As T_ABGSCATTER\n    InitAbgScatter lobe\n",
+                "a script of FRED",
+            ),
+            (
+                b"! x\nName\tWave\tAngle\tA\tB\tg\nX\t0\t0\t1\t1\t0\n",
+                "ABg scatter profile of OpticStudio",
+            ),
             (b"analytic\n::begin parameters\n", "BRDF Explorer"),
         ] {
             let error = named(file).unwrap();

@@ -97,6 +97,12 @@ fn json_keeps_its_contract() {
         angles[0]["energy_conserved"],
         angles[0]["reflectance"]["value"].as_f64() <= Some(1.0)
     );
+    let table = succeed(&["fit", &file, "--format", "csv", "--starts", "64", "--seed", "3"]);
+    let mut lines = table.lines().map(|line| line.split(','));
+    let name = "reflectance_least_theta_i";
+    let place = lines.next().unwrap().position(|column| column == name).expect(name);
+    let cell: f64 = lines.next().unwrap().nth(place).unwrap().parse().unwrap();
+    assert_eq!(Some(cell), angles[0]["reflectance"]["value"].as_f64());
     assert!(first["hits"].as_u64() >= Some(1) && first["first_start"].is_u64());
     assert!(one["evaluations"]["cost"].is_u64() && one["evaluations"]["linearize"].is_u64());
     let several = json(&succeed(&[

@@ -311,6 +311,7 @@ fn of_scan() -> Vec<Column> {
     let proved = "proved: no parameters within the bounds have an MSE^2 below 1 less this of that of the fit";
     let conserved = "reflectance of at most 1 at each angle of incidence";
     let worst = "angle of incidence where the residual is largest";
+    let least = "directional-hemispherical reflectance at the least angle of incidence";
     vec![
         text("theta_i_deg", "angles of incidence, degrees", Otherwise, |row| {
             let angles = row.scan?.angles.iter().map(|angle| shortest(angle.degrees()));
@@ -320,6 +321,9 @@ fn of_scan() -> Vec<Column> {
             let angles = row.scan?.angles.iter();
             let worst = angles.max_by(|a, b| a.rms_ln.total_cmp(&b.rms_ln))?;
             Some(worst.degrees())
+        }),
+        number("reflectance_least_theta_i", "1", least, Otherwise, |row| {
+            Some(row.scan?.derived.first()?.reflectance.value)
         }),
         number(
             "chi2",

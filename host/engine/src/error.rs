@@ -16,6 +16,8 @@ pub enum FitError {
     OutOfPlane(usize),
     /// No parameters within the bounds keep what is limited at 1 or below.
     Limit,
+    /// The course of a search with an instrument is not traced.
+    Trace,
     /// No compiled set has these terms.
     Terms(u8),
     /// There is no proof of the optimum for the model of this name.
@@ -38,6 +40,9 @@ impl fmt::Display for FitError {
             ),
             FitError::Limit => f.write_str("no parameters within the bounds reflect less light than arrives"),
             FitError::NoProof(model) => write!(f, "there is no proof of the optimum for the model {model}"),
+            FitError::Trace => {
+                f.write_str("the course of a search is traced without priors, aperture, offset and limit")
+            }
             FitError::Terms(terms) => write!(f, "no compiled model has the set of terms {terms:#b}"),
             FitError::Interrupted => f.write_str("interrupted"),
         }

@@ -19,8 +19,11 @@ pub fn passes(evaluations: Evaluations) -> f64 {
 /// The time begins when the scan stands in blocks, and each new best adds a look at the clock.
 ///
 /// # Errors
-/// [`FitError`].
+/// [`FitError`]; [`FitError::Trace`] where the options tell of an instrument.
 pub fn trace(samples: &[Sample<f64>], options: &FitOptions) -> Result<Trace, FitError> {
+    if !options.instrument.is_plain() {
+        return Err(FitError::Trace);
+    }
     let Some(scale) = Scale::of(&[samples], options) else {
         let (set, options) = compiled::set_of(options)?;
         return set.trace(samples, &options);

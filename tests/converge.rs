@@ -1,6 +1,9 @@
 //! `brdfit converge`, called in this process: its outputs, that all but times is the same in every run, and its errors.
 
+use brdfit::engine::trace::trace;
+use brdfit::engine::{FitError, FitOptions};
 use brdfit_suite::program;
+use brdfit_suite::scan::{data, scan as samples};
 use serde_json::Value;
 
 fn brdfit(arguments: &[&str], input: &[u8]) -> (u8, String, String) {
@@ -134,4 +137,17 @@ fn errors_are_one_line() {
     assert_eq!(brdfit(&[], b"").0, 2);
     assert_eq!(brdfit(&["--paper", "x.csv"], b"").0, 2);
     assert!(succeed(&["--help"], "").contains("Example:"));
+}
+
+/// The course is that of a search without an instrument: one with an aperture is refused.
+#[test]
+fn an_instrument_is_not_traced() {
+    let samples = samples(&data("testdata1_sym_seed1.csv"));
+    let mut options = FitOptions {
+        starts: Some(5),
+        ..FitOptions::default()
+    };
+    assert!(!trace(&samples, &options).unwrap().records.is_empty());
+    options.instrument.aperture = 0.01;
+    assert_eq!(trace(&samples, &options), Err(FitError::Trace));
 }

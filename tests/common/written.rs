@@ -109,6 +109,15 @@ pub fn texts() -> Vec<(&'static str, String)> {
             "lumos",
             "# phi_i theta_i phi_o theta_o brdf\n".to_string() + &line(&|i, s, f| format!("{i} -180 {s} 0 {f}\n")),
         ),
+        (
+            "alta",
+            "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#PARAM_OUT INV_STERADIAN_COSINE_FACTOR\n".to_string()
+                + &line(&|i, s, f| {
+                    let [view, light] = [s.abs(), i].map(f64::to_radians);
+                    let azimuth = if s < 0.0 { 0.0 } else { f64::PI };
+                    format!("{view} {light} {azimuth} {}\n", f * Real::portable_sin_cos(view).1)
+                }),
+        ),
         ("zemax", zemax),
         ("speos", speos()),
         ("lighttools", lighttools()),

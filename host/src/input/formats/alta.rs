@@ -130,7 +130,12 @@ fn set(header: &mut Header, key: &str, value: &str) -> Result<(), Error> {
             let mut counts = value.split_whitespace().map(str::parse::<usize>);
             match (counts.next(), counts.next()) {
                 (Some(Ok(inputs)), Some(Ok(outputs))) if inputs > 0 && outputs > 0 && inputs + outputs <= MOST => {
-                    (header.inputs, header.outputs) = (inputs, outputs);
+                    // What was said of other columns does not hold for these.
+                    *header = Header {
+                        inputs,
+                        outputs,
+                        ..Header::default()
+                    };
                 }
                 _ => {
                     return Err(Error::new(format!("#DIM is '{}'", shown(value)))
@@ -288,6 +293,10 @@ mod tests {
                 "3 numbers, and not 4",
             ),
             ("#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n0 0 0 x\n", "'x'"),
+            (
+                "#DIM 3 1\n#PARAM_IN ISOTROPIC_TV_TL_DPHI\n#DIM 1 1\n1 2\n",
+                "no #PARAM_IN",
+            ),
             ("#DIM 3 1\n#FORMAT binary\n", "as 'binary'"),
             ("#DIM 3 99999999999\n", "#DIM is"),
             ("#DIM 3 1\n#VS 3\n", "#VS is"),

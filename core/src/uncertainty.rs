@@ -82,6 +82,8 @@ impl<R: Real, const P: usize> Axes<R, P> {
 }
 
 /// What the residuals at an optimum tell about its parameters, for residuals of equal and independent errors.
+///
+/// Where residuals wander along the angle, as those of most measured scans do, true errors are several times larger: the program `brdfit` estimates their correlation, the core does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Uncertainty<R, const P: usize> {

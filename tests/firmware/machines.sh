@@ -5,6 +5,10 @@ unset RUSTC RUSTFLAGS CARGO_BUILD_TARGET CARGO_TARGET_DIR CARGO_ENCODED_RUSTFLAG
 # The level from which defmt logs.
 export DEFMT_LOG=info
 
+# Options of the compiler for the Cortex-M4F and the Cortex-M7.
+m4f="-Z emit-stack-sizes"
+m7="-C target-cpu=cortex-m7"
+
 fail() {
     echo "$0: $*" >&2
     exit 1

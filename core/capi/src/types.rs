@@ -318,7 +318,7 @@ pub struct brdfit_geometry<R> {
     pub factor: [R; 2],
 }
 
-/// What a fit knows of its parameters, for residuals of equal and independent errors.
+/// What a fit knows of its parameters, for residuals of equal and independent errors. Where residuals wander along the angle, as those of most measured scans do, true errors are several times larger; the program brdfit estimates that, this does not.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct brdfit_uncertainty<R> {

@@ -82,9 +82,9 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
 
     /// Is the best cost below this part, [`EXACT`], [`QUIET`] or [`FOLLOWED`], of that of a poor candidate?
     #[cfg_attr(target_os = "none", inline(never))]
-    pub fn is_below(&self, part: f64) -> bool {
+    pub fn is_below(&self, part: R) -> bool {
         let best = self.list.first();
-        best.is_some_and(|best| best.cost < self.poorest * R::of(part))
+        best.is_some_and(|best| best.cost < self.poorest * part)
     }
 
     /// Has a fit other slopes than the best end?

@@ -324,7 +324,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     }
 
     fn last(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
-        let exact = self.ends.is_below(EXACT);
+        let exact = self.ends.is_below(R::of(EXACT));
         let best = &mut self.ends.best;
         if best.stop.is_none() {
             self.evaluations.linearize += best.step(scene, &self.bounds, &self.options);

@@ -55,10 +55,10 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         }
         let ends = &self.ends;
         let agreed =
-            |hits| ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(EXACT) && !self.flat;
+            |hits| ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(R::of(EXACT)) && !self.flat;
         if self.round + 1 == ROUNDS || self.round == ROUNDS {
             let hits = if self.round == ROUNDS { HITS.0 } else { HITS.1 };
-            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene) || !ends.is_below(FOLLOWED);
+            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene) || !ends.is_below(R::of(FOLLOWED));
             return !self.unsettled;
         }
         if self.round == ROUNDS + FIRST_BANDS {

@@ -166,7 +166,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         }
         let varies = self.kind == Kind::Index;
         let first = if varies {
-            self.ends.is_below(QUIET)
+            self.ends.is_below(R::of(QUIET))
         } else {
             self.place == 0
         };

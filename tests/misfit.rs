@@ -7,10 +7,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdfit::analysis::bootstrap::{Noise, bootstrap};
+use brdfit::analysis::derived::{self, Derived, Value};
 use brdfit::analysis::misfit::mixture::matched;
 use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
+use brdfit::analysis::misfit::smoothed::smoothed;
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
-use brdfit::engine::{self, FitOptions, Material, Until};
+use brdfit::engine::{self, FitOptions, Material, Model, Until};
 use brdfit::input::{ReadOptions, parse};
 use brdfit::until::give_up;
 use brdfit_core::brdf::{DIFFUSE, SURFACE};
@@ -169,6 +171,37 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
     }
     check(of_ln, tolerance::RESTRICTED_LIKELIHOOD);
     check(of_covariance, tolerance::SANDWICH);
+}
+
+/// The mean of a normal process given its sums with noise: K V^-1 r.
+#[test]
+fn a_smoothed_line_is_the_mean_by_the_whole_matrix() {
+    let mut noise = Noise::new(2, 0);
+    let angles: Vec<f64> = (0..25).map(|k| 0.1 * f64::from(k / 2 + k % 3) + 0.04).collect();
+    let mut angles: Vec<f64> = angles.iter().map(|angle| angle + 0.02 * noise.unit()).collect();
+    angles.sort_by(f64::total_cmp);
+    // A direction that was measured twice.
+    angles[7] = angles[6];
+    let values: Vec<f64> = angles.iter().map(|_| noise.normal()).collect();
+    let mut worst = 0.0f64;
+    for (length, part, smooth) in [
+        (0.3, 0.9, false),
+        (0.3, 0.9, true),
+        (1.0, 0.3, true),
+        (0.02, 0.999, false),
+    ] {
+        let process = Process { length, part, smooth };
+        let row = |&a: &f64| angles.iter().map(|&b| kernel(process, a - b)).collect();
+        let own: Vec<Vec<f64>> = angles.iter().map(row).collect();
+        let mut whole = own.clone();
+        (0..angles.len()).for_each(|k| whole[k][k] = 1.0);
+        let right = values.iter().map(|&value| vec![value]).collect();
+        let expected = product(&own, &solved(whole, right).1);
+        let got = smoothed(&angles, &values, process);
+        let apart = got.iter().zip(&expected).map(|(got, exact)| (got - exact[0]).abs());
+        worst = apart.fold(worst, f64::max);
+    }
+    check(worst, tolerance::SMOOTHED);
 }
 
 #[test]
@@ -349,6 +382,55 @@ fn copies_of_a_correlated_scan_are_correlated() {
     println!("spread of copies over the standard error: {of_correlated:.3}, of independent ones {of_independent:.3}");
     assert!((0.75..1.25).contains(&of_correlated), "{of_correlated}");
     assert!(of_independent < 0.6, "{of_independent}");
+}
+
+/// A surface with GGX's facets whose lobe is fitted with Beckmann's: the width of that is another, and its error says so.
+#[test]
+fn the_width_of_another_lobe_is_within_its_error() {
+    let model = Model::find("ggx").unwrap();
+    let (mut held, mut alone, mut count) = (0, 0, 0);
+    for copy in 0..40 {
+        let mut noise = Noise::new(12, copy);
+        let mut truth = Material {
+            model,
+            values: model.lower(),
+        };
+        for (name, value) in [("rho_d", 0.05), ("rho_s", 1.0), ("n", 1.5)] {
+            truth = truth.with(name, value);
+        }
+        truth = truth.with("m", 0.06 + 0.12 * noise.unit());
+        let at = |degrees: i32| Sample::in_plane(30f64.to_radians(), f64::from(degrees).to_radians(), 1.0);
+        let samples: Vec<Sample<f64>> = (-84..=84)
+            .map(|degrees| Sample {
+                brdf: (truth.ln_f(&at(degrees)).unwrap() + 0.01 * noise.normal()).exp(),
+                ..at(degrees)
+            })
+            .collect();
+        let mut outcome = engine::fit(&samples, &measured(0.0, 0).1).unwrap();
+        let plain = derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty)[0];
+        assert!(plain.peak.unwrap().from_data.is_none());
+        outcome.uncertainty = uncertainty(&samples, &outcome);
+        let known = &outcome.uncertainty;
+        let width = |at: &Derived| at.peak.and_then(|peak| peak.width);
+        let actual = derived::at(at(0).theta_i, &truth, known);
+        let found = derived::at_each_angle(&samples, outcome.view(), known)[0];
+        let by_parameters = derived::at(at(0).theta_i, &outcome.material(), known);
+        // A lobe that never falls to half has no width.
+        let (Some(actual), Some(got), Some(without)) = (width(&actual), width(&found), width(&by_parameters)) else {
+            continue;
+        };
+        count += 1;
+        assert_eq!(got.value, without.value);
+        let read = found.peak.unwrap().from_data.unwrap().width.unwrap();
+        assert!((read.value / actual.value - 1.0).abs() < 0.1, "{read:?} {actual:?}");
+        let within = |width: Value| {
+            let away = (width.value - actual.value).abs();
+            u32::from(away <= coverage_factor(known) * width.stderr)
+        };
+        (held, alone) = (held + within(got), alone + within(without));
+    }
+    println!("widths: {held} of {count} held, {alone} by the errors of parameters");
+    assert!(count >= 30 && 10 * held >= 9 * count && 2 * alone <= count);
 }
 
 /// Two runs of one paint on one instrument: apart by many of the errors of independent residuals, and no more than by their own.

@@ -1,5 +1,6 @@
 //! Scans and weights of any size have the same fit, in the unit of the scan.
 
+use brdfit::engine::models::MODELS;
 use brdfit::engine::{self, FitOptions, Material, Model, Outcome, Precision, joint};
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
@@ -261,4 +262,36 @@ fn errors_and_derived_quantities_have_the_unit_of_the_scan() {
         );
     }
     check(worst, tolerance::SCALED_OUTPUT);
+}
+
+/// Every model with a weight, whose f is linear in all weights together, in any unit: Sandford and Robertson's alone has none, as what it emits is an absolute part of 1.
+#[test]
+fn every_model_has_a_fit_of_any_size() {
+    let samples = scan();
+    let (mut worst, mut of) = (0.0f64, "");
+    for model in &MODELS {
+        let mut options = FitOptions::of(model);
+        for (place, parameter) in model.parameters.iter().enumerate() {
+            if parameter.is_weight() {
+                options.upper[place] = 1e305;
+            }
+        }
+        let without = !model.parameters.iter().any(|parameter| parameter.is_weight());
+        assert_eq!(without, model.name == "sandford-robertson", "{}", model.name);
+        if without {
+            continue;
+        }
+        let expected = engine::fit(&samples, &options).expect("a scan");
+        for size in ["1e-300", "1e-30", "1e300"] {
+            let size: f64 = size.parse().expect("a number");
+            let found = engine::fit(&scaled(&samples, size, 1.0), &options).expect("a scan");
+            let apart = (found.cost / expected.cost - 1.0).abs();
+            println!("{} {size:e}: cost {apart:.1e}", model.name);
+            if apart > worst {
+                (worst, of) = (apart, model.name);
+            }
+        }
+    }
+    println!("{of}: {worst}");
+    check(worst, tolerance::SCALED_COST);
 }

@@ -311,6 +311,8 @@ pub const RGL_ROUND_TRIP: Tolerance = Tolerance(1e-6);
 pub const RESTRICTED_LIKELIHOOD: Tolerance = Tolerance(4e-15);
 /// The sandwich by recursion against that of whole matrices; measured 1e-14.
 pub const SANDWICH: Tolerance = Tolerance(1e-13);
+/// What of residuals is their process, against the whole matrix; residuals are of size 1; measured 1.2e-13.
+pub const SMOOTHED: Tolerance = Tolerance(3e-13);
 
 // The instrument.
 
@@ -319,6 +321,8 @@ pub const APERTURE: Tolerance = Tolerance(2e-4);
 
 // Scans of any size.
 
+/// Costs of fits by any model of a scan times 1e-300 to 1e300, relative; measured 2.3e-14.
+pub const SCALED_COST: Tolerance = Tolerance(5e-14);
 /// Relative difference of parameters of a scan times 1e-300 to 1e300, whose costs agree to 1e-14; measured 1.8e-15.
 pub const SCALED_F64: Tolerance = Tolerance(5e-15);
 /// The same of standard errors, of which those of rho_s and n are as large as their values; measured 6.7e-10.

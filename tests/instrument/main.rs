@@ -46,6 +46,13 @@ fn options(change: impl Fn(&mut FitOptions)) -> FitOptions {
     options
 }
 
+/// All terms, with what an instrument adds.
+fn all_terms(change: impl Fn(&mut FitOptions)) -> FitOptions {
+    let mut options = FitOptions::default();
+    change(&mut options);
+    options
+}
+
 fn fit(samples: &[Sample<f64>], options: &FitOptions) -> Outcome {
     engine::fit(samples, options).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -17,12 +17,13 @@ use brdfit_core::real::Real;
 use brdfit_core::search::{self, Found, Scene};
 
 use crate::error::FitError;
+use crate::instrument::View;
 use crate::layout::Layout;
 use crate::options::{FitOptions, Method};
 use crate::outcome::{Minimum, Outcome};
 use crate::passes::Kernel;
 use crate::threads;
-use crate::uncertainty;
+use crate::uncertainty::{self, NEAR_ZERO};
 use crate::until::Watched;
 use crate::values::Values;
 use beside::{Beside, Rows};
@@ -139,8 +140,16 @@ pub(crate) fn run<R: Real, const P: usize>(
     let cost = best.at.cost.f64() - limit;
     let view = options.view(layout.values(&best.x));
     let nuisance = setup.nuisance.then(|| {
-        let slopes = layout.slopes(&x64);
-        // Derivatives by the coordinates from those by the parameters.
+        // Derivatives by the coordinates from those by the parameters; at kappa = 0 both have theirs a little above.
+        let mut near = x64;
+        if let Some(kappa) = layout.squared().filter(|&kappa| x64[kappa] == 0.0) {
+            near[kappa] = NEAR_ZERO * NEAR_ZERO;
+        }
+        let slopes = layout.slopes(&near);
+        let of = View {
+            material: view.material.off_zero(),
+            ..view
+        };
         let row = |gradient: Values| {
             std::array::from_fn(|k| match slopes[k] {
                 0.0 => 0.0,
@@ -148,7 +157,7 @@ pub(crate) fn run<R: Real, const P: usize>(
             })
         };
         Nuisance::new(samples, &view, |sample| {
-            view.gradient(sample).map_or([0.0; P], |(_, all)| row(all))
+            of.gradient(sample).map_or([0.0; P], |(_, all)| row(all))
         })
     });
     let known = Settled {

@@ -20,6 +20,10 @@ pub struct Misfit {
     pub length: f64,
     /// The part of their variance that is correlated, 0 to 1; the rest is noise of each sample.
     pub part: f64,
+    /// How likely it is that the correlated part has a slope, as the misfit of a model has, and the drift of an instrument has not: 0 to 1.
+    pub smooth: f64,
+    /// Is independence refuted, at a level of 5 %? Otherwise it is only less likely, and errors count both.
+    pub sure: bool,
     /// Their variance before the fit took up a part of them, over that of the residuals.
     pub variance: f64,
     /// Standard errors over those of independent residuals: the least and the largest of a parameter inside its bounds.

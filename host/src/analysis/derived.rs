@@ -1,5 +1,7 @@
 //! What a fit determines at each angle of incidence, also where the parameters themselves are not determined.
 
+pub mod from_data;
+
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 use brdfit_core::brdf::fresnel;
@@ -9,7 +11,8 @@ use brdfit_core::real::Real;
 use super::misfit::coverage_factor;
 use super::reflectance::reflectance;
 use crate::engine::uncertainty::Uncertainty;
-use crate::engine::{Material, Values};
+use crate::engine::{Material, Values, View};
+use from_data::{Line, Read};
 
 /// The peak of a lobe is searched up to this far from the normal, radians (89.9 degrees).
 const HORIZON: f64 = 0.9989 * FRAC_PI_2;
@@ -23,6 +26,17 @@ pub struct Value {
     pub stderr: f64,
 }
 
+impl Value {
+    /// With what the difference from what the data have adds to its error.
+    fn with(self, from_data: Option<Value>) -> Value {
+        let more = from_data.map_or(0.0, |read| read.stderr);
+        Value {
+            stderr: libm::hypot(self.stderr, more),
+            ..self
+        }
+    }
+}
+
 /// The surface lobe in the plane of incidence, without the other terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -33,6 +47,16 @@ pub struct Peak {
     pub f: Value,
     /// Its full width at half of that, radians; `None` where it does not fall to half before the horizon.
     pub width: Option<Value>,
+    /// What the samples say of both where residuals are correlated, which is in the errors; none where they say nothing.
+    pub from_data: Option<Read>,
+}
+
+impl Peak {
+    /// A value of it with the part of its error that is the model's, and that more samples or runs do not take away.
+    pub fn of_model(&self, value: Value, read: impl Fn(&Read) -> Option<Value>) -> (Value, f64) {
+        let read = self.from_data.as_ref().and_then(read);
+        (value, read.map_or(0.0, |read| read.stderr))
+    }
 }
 
 /// The derived quantities of one angle of incidence.
@@ -70,24 +94,25 @@ fn told(value: Value, range: f64, factor: f64) -> Value {
 }
 
 /// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
-pub fn at_each_angle(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Vec<Derived> {
+pub fn at_each_angle(samples: &[Sample<f64>], view: impl Into<View>, known: &Uncertainty) -> Vec<Derived> {
+    let view = view.into();
     let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
     // Student's t of thousands of degrees of freedom takes longer than all the rest.
     let factor = coverage_factor(known);
-    let each = angles.into_iter();
-    each.map(|theta_i| with_factor(theta_i, material, known, factor))
-        .collect()
+    let lines = from_data::of(samples, &view, known);
+    let one = |theta_i: f64| with_factor(theta_i, &view.material, known, factor, Line::at(&lines, theta_i));
+    angles.into_iter().map(one).collect()
 }
 
-/// At one angle of incidence, radians.
+/// At one angle of incidence, radians, by the parameters alone.
 pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
-    with_factor(theta_i, material, known, coverage_factor(known))
+    with_factor(theta_i, material, known, coverage_factor(known), None)
 }
 
 /// The same where it is known how many standard errors are the half of a 95 % interval.
-fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f64) -> Derived {
+fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f64, line: Option<&Line>) -> Derived {
     let slopes = material.off_zero();
     // No surface reflects more than it receives.
     let value = |value: f64, mut gradient: Values| {
@@ -123,7 +148,7 @@ fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f
         theta_i,
         rho_s_f,
         rho_v_f: product("rho_v"),
-        peak: rho_s_f.and_then(|product| peak(theta_i, material, known, (product.value, factor))),
+        peak: rho_s_f.and_then(|product| peak(theta_i, material, known, (product.value, factor), line)),
         reflectance: {
             let (sum, gradient) = reflectance(material, theta_i);
             value(sum, gradient)
@@ -131,7 +156,13 @@ fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f
     }
 }
 
-fn peak(theta_i: f64, material: &Material, known: &Uncertainty, (product, factor): (f64, f64)) -> Option<Peak> {
+fn peak(
+    theta_i: f64,
+    material: &Material,
+    known: &Uncertainty,
+    (product, factor): (f64, f64),
+    line: Option<&Line>,
+) -> Option<Peak> {
     // The other terms do not belong to the lobe.
     const OTHERS: [&str; 2] = ["rho_d", "rho_v"];
     let lobe = OTHERS.iter().fold(*material, |material, name| material.with(name, 0.0));
@@ -158,19 +189,32 @@ fn peak(theta_i: f64, material: &Material, known: &Uncertainty, (product, factor
     let width = half(HORIZON).zip(half(-HORIZON));
     let width = width.map(|((right, d_right), (left, d_left))| {
         let gradient = Values::from_fn(d_right.len(), |k| d_right[k] - d_left[k]);
-        let width = Value {
+        Value {
             value: right - left,
             stderr: known.stderr_of(&gradient),
-        };
-        told(width, PI, factor)
+        }
     });
-    let stderr = f * known.stderr_of(&at_top);
-    Some(Peak {
+    let value = Value {
+        value: f,
+        stderr: f * known.stderr_of(&at_top),
+    };
+    let mut peak = Peak {
         theta_s: top,
-        // As high as with all the light.
-        f: told(Value { value: f, stderr }, f * product.recip().max(1.0), factor),
+        f: value,
         width,
-    })
+        from_data: None,
+    };
+    peak.from_data = line.and_then(|line| line.peak(material, &lobe, &peak));
+    let read = peak.from_data;
+    // As high as with all the light.
+    peak.f = told(
+        value.with(read.map(|read| read.f)),
+        f * product.recip().max(1.0),
+        factor,
+    );
+    let of_width = read.and_then(|read| read.width);
+    peak.width = width.map(|width| told(width.with(of_width), PI, factor));
+    Some(peak)
 }
 
 /// Where a lobe of slope m around theta_i is brightest: the best of a grid that is dense at theta_i, then golden sections.

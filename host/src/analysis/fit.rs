@@ -15,6 +15,7 @@ use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
+use crate::until::until;
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
@@ -86,7 +87,10 @@ impl FittedScan {
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
         let (outcome, verdict) = known(measurement, &samples, options, outcome);
-        let derived = derived::at_each_angle(&samples, &outcome.material(), &outcome.uncertainty);
+        // What nobody waits for any more is thrown away, and of a long scan it takes its time.
+        let over = until().is_over();
+        let samples = if over { Cow::Owned(Vec::new()) } else { samples };
+        let derived = derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty);
         FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
@@ -94,7 +98,10 @@ impl FittedScan {
             about: measurement.about.clone(),
             left_out,
             angles: by_angle(&samples, &outcome.view()),
-            hints: hints::of_fit(measurement, options, &outcome, &derived),
+            hints: match over {
+                true => Vec::new(),
+                false => hints::of_fit(measurement, options, &outcome, &derived),
+            },
             derived,
             options: *options,
             chi2: measurement

@@ -10,6 +10,7 @@ pub mod lines;
 pub mod mixture;
 pub mod process;
 pub mod rows;
+pub mod smoothed;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
@@ -27,7 +28,7 @@ use process::{Node, Process, Residuals};
 ///
 /// The mean over all processes counts independence too, so that the errors of such scans hardly grow; with more evidence asked for, a wander that white noise hides would be passed over.
 pub const EVIDENCE: f64 = 0.5;
-/// It must be surer where one process stands for all, or speaks against a file's standard deviations: 4 % of scans with independent errors reach this.
+/// It must be surer to be called a fact, where one process stands for all, and to speak against a file's standard deviations: 4 % of scans with independent errors reach this.
 pub const SURE: f64 = 2.0;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
@@ -129,6 +130,8 @@ pub struct Mean {
     size: f64,
     length: f64,
     part: f64,
+    smooth: f64,
+    sure: bool,
     variance: f64,
 }
 
@@ -148,6 +151,8 @@ impl Mean {
             size,
             length: mean(&|node| node.process.length),
             part: mean(&|node| node.process.part),
+            smooth: mean(&|node| f64::from(u8::from(node.process.smooth))),
+            sure: nodes.iter().any(|node| node.evidence > SURE),
             variance: mean(&|node| node.variance),
         }
     }
@@ -157,6 +162,8 @@ impl Mean {
         Misfit {
             length: self.length,
             part: self.part,
+            smooth: self.smooth,
+            sure: self.sure,
             variance: self.variance,
             factor,
         }

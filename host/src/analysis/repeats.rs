@@ -47,7 +47,7 @@ pub struct Budget {
     pub by_chance: f64,
     /// Standard uncertainty of the mean by statistics (type A), over one degree of freedom less than runs.
     pub type_a: f64,
-    /// That of the calibration (type B).
+    /// That of what all runs have in common (type B): the calibration, and what the lobe that the samples show has of another shape than the model's.
     pub type_b: f64,
     /// Combined standard uncertainty.
     pub combined: f64,
@@ -92,9 +92,12 @@ pub fn quantities(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
                 stderr: known.stderr[place],
             })
         };
-        let scaled = if parameter.is_weight() { calibration } else { 0.0 };
+        let common = Common {
+            relative: if parameter.is_weight() { calibration } else { 0.0 },
+            absolute: 0.0,
+        };
         let runs = fits.iter().zip(&open).map(value).collect();
-        quantity(fits, parameter.name.into(), parameter.unit, None, runs, scaled)
+        quantity(fits, parameter.name.into(), parameter.unit, None, runs, common)
     });
     let parameters: Vec<Quantity> = parameters.collect();
     parameters.into_iter().chain(derived(fits, calibration)).collect()
@@ -108,18 +111,31 @@ fn open(fit: &FittedScan) -> Vec<&'static str> {
 
 /// What is derived at the angles of incidence that all runs have.
 fn derived(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
-    type Of = fn(&Derived) -> Option<Value>;
+    // With what of the error is the model's, the same in all runs.
+    type Of = fn(&Derived) -> Option<(Value, f64)>;
     let degrees = |value: Value| Value {
         value: value.value.to_degrees(),
         stderr: value.stderr.to_degrees(),
     };
-    let width: Of = |at| at.peak.and_then(|peak| peak.width);
     let kinds: [(&str, &'static str, Of, f64); 5] = [
-        ("rho_s F", "", |at| at.rho_s_f, calibration),
-        ("rho_v F", "", |at| at.rho_v_f, calibration),
-        ("peak", "1/sr", |at| at.peak.map(|peak| peak.f), calibration),
-        ("width", "deg", width, 0.0),
-        ("reflectance", "", |at| Some(at.reflectance), calibration),
+        ("rho_s F", "", |at| Some((at.rho_s_f?, 0.0)), calibration),
+        ("rho_v F", "", |at| Some((at.rho_v_f?, 0.0)), calibration),
+        (
+            "peak",
+            "1/sr",
+            |at| at.peak.map(|peak| peak.of_model(peak.f, |read| Some(read.f))),
+            calibration,
+        ),
+        (
+            "width",
+            "deg",
+            |at| {
+                at.peak
+                    .and_then(|peak| Some(peak.of_model(peak.width?, |read| read.width)))
+            },
+            0.0,
+        ),
+        ("reflectance", "", |at| Some((at.reflectance, 0.0)), calibration),
     ];
     let mut all = Vec::new();
     for at in &fits[0].derived {
@@ -128,13 +144,27 @@ fn derived(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
         let Some(everywhere) = everywhere else { continue };
         for (name, unit, of, scaled) in kinds {
             let value = |at: &&Derived| {
-                let value = of(at).filter(|value| value.stderr.is_finite() && value.stderr < value.value)?;
-                Some(if unit == "deg" { degrees(value) } else { value })
+                let (value, of_model) = of(at)?;
+                let told = value.stderr.is_finite() && value.stderr < value.value;
+                let statistical = Value {
+                    stderr: (value.stderr * value.stderr - of_model * of_model).max(0.0).sqrt(),
+                    ..value
+                };
+                told.then_some(match unit {
+                    "deg" => (degrees(statistical), of_model.to_degrees()),
+                    _ => (statistical, of_model),
+                })
             };
-            let runs: Vec<Option<Value>> = everywhere.iter().map(value).collect();
-            if runs.iter().any(Option::is_some) {
+            let told: Vec<Option<(Value, f64)>> = everywhere.iter().map(value).collect();
+            let of_model: Vec<f64> = told.iter().flatten().map(|told| told.1).collect();
+            if !of_model.is_empty() {
                 let theta_i = (at.theta_i.to_degrees() * 1e9).round() / 1e9;
-                all.push(quantity(fits, name.into(), unit, Some(theta_i), runs, scaled));
+                let common = Common {
+                    relative: scaled,
+                    absolute: of_model.iter().sum::<f64>() / of_model.len() as f64,
+                };
+                let runs = told.into_iter().map(|told| Some(told?.0)).collect();
+                all.push(quantity(fits, name.into(), unit, Some(theta_i), runs, common));
             }
         }
     }
@@ -147,7 +177,7 @@ fn quantity(
     unit: &'static str,
     theta_i: Option<f64>,
     runs: Vec<Option<Value>>,
-    scaled: f64,
+    common: Common,
 ) -> Quantity {
     let told = runs.iter().zip(fits).map(|(run, fit)| {
         Some(Told {
@@ -158,7 +188,7 @@ fn quantity(
     let told: Vec<Option<Told>> = told.collect();
     let all: Option<Vec<Told>> = told.iter().copied().collect();
     Quantity {
-        budget: all.and_then(|values| budget(&values, scaled)),
+        budget: all.and_then(|values| budget(&values, common)),
         disagree: disagreeing(&told),
         name,
         unit,
@@ -201,8 +231,17 @@ pub fn disagreeing(runs: &[Option<Told>]) -> Vec<usize> {
     apart
 }
 
-/// Of two values or more; `scaled` is the relative uncertainty of a common factor.
-pub fn budget(told: &[Told], scaled: f64) -> Option<Budget> {
+/// The standard uncertainty of what all runs have in common.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Common {
+    /// Of a factor.
+    pub relative: f64,
+    /// Of a summand, in the quantity's unit.
+    pub absolute: f64,
+}
+
+/// Of two values or more.
+pub fn budget(told: &[Told], common: Common) -> Option<Budget> {
     if told.len() < 2 {
         return None;
     }
@@ -215,7 +254,8 @@ pub fn budget(told: &[Told], scaled: f64) -> Option<Budget> {
     let between = (squares.sum::<f64>() / (count - 1.0)).sqrt();
     let within = (values.iter().map(|value| value.stderr * value.stderr).sum::<f64>() / count).sqrt();
     let ratio = (between / within) * (between / within);
-    let (type_a, type_b) = (between / count.sqrt(), scaled * mean.abs());
+    let type_a = between / count.sqrt();
+    let type_b = (common.relative * mean).hypot(common.absolute);
     let combined = (type_a * type_a + type_b * type_b).sqrt();
     let part = combined / type_a;
     let degrees_of_freedom = (count - 1.0) * part * part * part * part;
@@ -295,7 +335,11 @@ mod tests {
     fn a_budget_is_that_of_the_guide() {
         // Four runs, and a calibration known to 1 %.
         let all = values(&[10.0, 10.2, 9.9, 10.1], 0.02);
-        let found = budget(&all, 0.01).unwrap();
+        let calibration = Common {
+            relative: 0.01,
+            absolute: 0.0,
+        };
+        let found = budget(&all, calibration).unwrap();
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
         close(found.mean, 10.05);
         close(found.between, 0.129_099);
@@ -306,20 +350,33 @@ mod tests {
         close(found.degrees_of_freedom, 35.173);
         close(found.coverage, 2.029_8);
         assert!(found.differs() && found.apart.is_none());
+        // What the model has of another shape adds to it.
+        let both = Common {
+            absolute: 0.2,
+            ..calibration
+        };
+        close(budget(&all, both).unwrap().type_b, 0.223_832);
         // Without a calibration t has one degree of freedom less than there are runs.
-        close(budget(&all, 0.0).unwrap().coverage, 3.182_4);
-        close(budget(&all[..2], 0.0).unwrap().coverage, 12.706_2);
-        assert_eq!(budget(&all[..1], 0.0), None);
+        close(budget(&all, Common::default()).unwrap().coverage, 3.182_4);
+        close(budget(&all[..2], Common::default()).unwrap().coverage, 12.706_2);
+        assert_eq!(budget(&all[..1], Common::default()), None);
     }
 
     #[test]
     fn one_run_of_many_can_stand_apart() {
         // Grubbs's limit for six values is 1.887.
-        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), 0.0).unwrap();
+        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), Common::default()).unwrap();
         assert_eq!(apart(1.2).apart, Some(5));
         assert_eq!(apart(1.03).apart, None);
         // Of two nobody knows which.
-        assert_eq!(budget(&values(&[1.0, 2.0], 0.01), 0.0).unwrap().apart, None);
-        assert!(!budget(&values(&[1.0, 1.01], 0.01), 0.0).unwrap().differs());
+        assert_eq!(
+            budget(&values(&[1.0, 2.0], 0.01), Common::default()).unwrap().apart,
+            None
+        );
+        assert!(
+            !budget(&values(&[1.0, 1.01], 0.01), Common::default())
+                .unwrap()
+                .differs()
+        );
     }
 }

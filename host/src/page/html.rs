@@ -145,6 +145,7 @@ fn summary(section: &Section) -> Markup {
             @if let Some(misfit) = &known.misfit {
                 li { (capital(&words::correlated(misfit))) "." }
             }
+            @if let Some(sentence) = words::from_data(&fit.derived) { li { (capital(&sentence)) "." } }
             @for open in undetermined(&outcome.material(), known, &fit.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }

@@ -115,6 +115,13 @@ pub fn verdict(found: &Found) -> Vec<String> {
             percent(found.calibration)
         ));
     }
+    let lobe = found.quantities.iter().find(|one| one.name == "width");
+    if lobe
+        .and_then(|one| one.budget.as_ref())
+        .is_some_and(|budget| budget.type_b > 0.0)
+    {
+        lines.push("Type B of peak and width holds what the lobe that the samples show has of another shape than the model's, which is alike in all runs.".into());
+    }
     let more: Vec<String> = budgets()
         .filter(|(_, budget)| budget.differs())
         .map(|(one, budget)| format!("{} ({} times)", name(one), two(budget.between / budget.within)))

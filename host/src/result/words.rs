@@ -1,13 +1,13 @@
 //! Sentences on a fit.
 
 use crate::analysis::choose::{Candidate, Choice};
-use crate::analysis::derived::Value;
+use crate::analysis::derived::{Derived, Value};
 use crate::analysis::deviations::Verdict;
 use crate::analysis::misfit::Inflation;
 use crate::analysis::proof::Proof;
 use crate::analysis::undetermined::Undetermined;
 use crate::engine::uncertainty::Misfit;
-use crate::number::{four, percent, percent_up, two};
+use crate::number::{four, percent, percent_up, six, two};
 use crate::terms::term_names;
 
 use brdfit_core::brdf::ALL;
@@ -62,7 +62,7 @@ pub fn deviations(verdict: Verdict) -> String {
 /// What is said of a fit without residuals.
 pub const EXACT: &str = "the fit is exact: no residual tells of errors, and so nothing has a standard error";
 
-/// How far residuals are correlated and what it does to errors, such as "residuals are correlated over 14 deg: errors are 2.0 to 4.1 times those of independent ones".
+/// How far residuals are correlated and what it does to errors, such as "residuals are correlated over 14 deg: errors are 2.0 to 4.1 times those of independent ones"; they are called so where independence is refuted, which is wrong of one in twenty scans with independent errors at most.
 pub fn correlated(misfit: &Misfit) -> String {
     let (least, most) = misfit.factor;
     let times = match (factor(least), factor(most)) {
@@ -70,9 +70,46 @@ pub fn correlated(misfit: &Misfit) -> String {
         (least, most) => format!("{least} to {most}"),
     };
     let over = two(misfit.length.to_degrees());
-    // One in six scans with independent errors has so small a part.
-    let are = if misfit.part < 0.25 { "may be" } else { "are" };
-    format!("residuals {are} correlated over {over} deg: errors are {times} times those of independent ones")
+    match misfit.sure {
+        true => format!("residuals are correlated over {over} deg: errors are {times} times those of independent ones"),
+        false => format!(
+            "residuals may be independent, or correlated over {over} deg: errors count both, and are {times} times those of independent ones"
+        ),
+    }
+}
+
+/// By how much the lobe that the samples show differs from that of the model, such as "read from the data, the lobe is 12 % wider at 45 deg, and its peak 8.1 % lower at 60 deg: that is in the errors of both", each at the angle of incidence where it is largest; none where it adds little to the errors.
+pub fn from_data(derived: &[Derived]) -> Option<String> {
+    /// A difference that makes less than this part of an error is not told.
+    const PART: f64 = 0.5;
+    let largest = |of: fn(&Derived) -> Option<(Value, Value)>, more: &str, less: &str| {
+        let one = |at: &Derived| {
+            let (model, read) = of(at)?;
+            let part = read.value / model.value - 1.0;
+            (read.stderr >= PART * model.stderr).then_some((at.theta_i, part))
+        };
+        let most = derived
+            .iter()
+            .filter_map(one)
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        most.map(|(theta_i, part)| {
+            let than = if part > 0.0 { more } else { less };
+            format!("{} {than} at {} deg", percent(part.abs()), six(theta_i.to_degrees()))
+        })
+    };
+    let width = |at: &Derived| {
+        let peak = at.peak?;
+        peak.width.zip(peak.from_data?.width)
+    };
+    let peak = |at: &Derived| Some((at.peak?.f, at.peak?.from_data?.f));
+    let (width, peak) = (largest(width, "wider", "narrower"), largest(peak, "higher", "lower"));
+    let what = match (width, peak) {
+        (None, None) => return None,
+        (Some(width), None) => format!("lobe is {width}: that is in the error of its width"),
+        (None, Some(peak)) => format!("lobe's peak is {peak}: that is in its error"),
+        (Some(width), Some(peak)) => format!("lobe is {width}, and its peak {peak}: that is in the errors of both"),
+    };
+    Some(format!("read from the data, the {what}"))
 }
 
 /// By what correlation the candidates of a choice are judged.

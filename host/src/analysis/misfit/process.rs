@@ -66,6 +66,8 @@ pub struct Node {
     pub process: Process,
     /// Its share of the likelihood of all.
     pub weight: f64,
+    /// ln of its likelihood over that of independence.
+    pub evidence: f64,
     /// Its variance, in units of that of the residuals.
     pub variance: f64,
     /// Covariance of the fit, in the coordinates of the rows: 1 for independent residuals.
@@ -141,6 +143,7 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     // Independence counts as much as all else together.
     let others = Real::portable_ln(list.len() as f64 - 1.0);
     let best = list.iter().map(|(_, (ln, _))| *ln).fold(f64::NEG_INFINITY, f64::max);
+    let independent = list.last()?.1.0;
     let share = |(process, (ln, _)): &Judged| {
         let more = match process.part {
             0.0 => others,
@@ -159,6 +162,7 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
     let node = |one: &&Judged| Node {
         process: one.0,
         weight: share(one) / total,
+        evidence: one.1.0 - independent,
         variance: one.1.1,
         covariance: common.covariance(all, one.0, one.1.1),
     };
@@ -243,7 +247,7 @@ pub fn likelihood(all: &Residuals, process: Process, degrees: f64) -> (f64, f64)
 }
 
 /// What the state is expected to be after `angle`, per state before.
-fn step(angle: f64, process: Process) -> [[f64; 2]; 2] {
+pub fn step(angle: f64, process: Process) -> [[f64; 2]; 2] {
     if process.smooth {
         let x = SMOOTH * angle / process.length;
         let e = Real::portable_exp(-x.min(700.0));

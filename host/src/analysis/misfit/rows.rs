@@ -6,11 +6,12 @@ use rayon::prelude::*;
 use super::lines;
 use super::process::Residuals;
 use crate::engine::{Values, View};
+use crate::until::until;
 
 /// Residuals that a thread takes at once.
 const SHARE: usize = 4096;
 
-/// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite.
+/// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite, or if nobody waits for them any more.
 pub fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Residuals> {
     let slopes = View {
         material: view.material.off_zero(),
@@ -44,7 +45,11 @@ pub fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: 
     let values = all.values.par_chunks_mut(SHARE);
     let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
     let shares = shares.zip(places.par_chunks(SHARE));
+    let until = until();
     let whole = shares.map(|((values, rows), places)| {
+        if until.is_over() {
+            return None;
+        }
         let rows = rows.chunks_mut(axes.len());
         let mut points = places.iter().zip(values.iter_mut().zip(rows));
         points.try_for_each(|(&place, (value, row))| one(place, value, row))

@@ -10,7 +10,7 @@ use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
 use crate::engine::Outcome;
 use crate::engine::uncertainty::Misfit;
-use crate::result::words::{correlated, sentence};
+use crate::result::words::{correlated, from_data, sentence};
 
 /// What is known of the parameters.
 #[derive(Serialize)]
@@ -24,6 +24,8 @@ pub struct Known {
     coverage_factor_95: f64,
     /// Null where residuals are independent.
     correlated: Option<Correlated>,
+    /// What the lobe that the samples show adds to the errors of peak and width; null where that is little.
+    lobe_from_data: Option<String>,
     /// Of J'J, columns scaled, over the parameters inside their bounds.
     condition: f64,
     /// Null where a parameter has none.
@@ -46,6 +48,8 @@ pub struct Correlated {
     over_deg: f64,
     /// Part of the variance of a residual.
     part: f64,
+    /// Is independence refuted, at a level of 5 %?
+    sure: bool,
     /// Errors over those of independent residuals, least and largest.
     factor: [f64; 2],
     sentence: String,
@@ -56,6 +60,7 @@ impl From<&Misfit> for Correlated {
         Correlated {
             over_deg: misfit.length.to_degrees(),
             part: misfit.part,
+            sure: misfit.sure,
             factor: misfit.factor.into(),
             sentence: correlated(misfit),
         }
@@ -86,8 +91,16 @@ pub struct AtAngle {
     peak_theta_s_deg: Option<f64>,
     peak_brdf_per_sr: Option<Number>,
     width_deg: Option<Number>,
+    /// Peak and width as the samples show them where residuals are correlated; each stderr is the part of the error above that their difference makes.
+    from_data: Option<FromData>,
     reflectance: Number,
     energy_conserved: bool,
+}
+
+#[derive(Serialize)]
+struct FromData {
+    peak_brdf_per_sr: Number,
+    width_deg: Option<Number>,
 }
 
 #[derive(Serialize)]
@@ -125,6 +138,7 @@ pub fn known(outcome: &Outcome, derived: &[Derived]) -> Known {
         effective_degrees_of_freedom: known.effective,
         coverage_factor_95: coverage_factor(known),
         correlated: known.misfit.as_ref().map(Correlated::from),
+        lobe_from_data: from_data(derived),
         condition: known.condition,
         stderr: ByName::new(model, |k| {
             (has(k, Place::Inside) && known.stderr[k].is_finite()).then_some(known.stderr[k])
@@ -154,6 +168,10 @@ pub fn at_angle(at: &Derived) -> AtAngle {
         peak_theta_s_deg: at.peak.map(|peak| peak.theta_s.to_degrees()),
         peak_brdf_per_sr: at.peak.map(|peak| number(peak.f)),
         width_deg: at.peak.and_then(|peak| peak.width).map(degrees),
+        from_data: at.peak.and_then(|peak| peak.from_data).map(|read| FromData {
+            peak_brdf_per_sr: number(read.f),
+            width_deg: read.width.map(degrees),
+        }),
         reflectance: number(at.reflectance),
         energy_conserved: at.conserves_energy(),
     }

@@ -66,6 +66,7 @@ pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<Stri
     if let Some(misfit) = &known.misfit {
         lines.push(format!("    {}", correlated(misfit)));
     }
+    lines.extend(words::from_data(derived).map(|sentence| format!("    {sentence}")));
     let expanded = coverage_factor(known);
     if (expanded - 2.0).abs() > 0.05 {
         lines.push(format!("    95 % intervals are +- {expanded:.1} of these errors"));

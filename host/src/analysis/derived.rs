@@ -1,8 +1,9 @@
 //! What a fit determines at each angle of incidence, also where the parameters themselves are not determined.
 
 pub mod from_data;
+mod shape;
 
-use std::f64::consts::{FRAC_PI_2, LN_2, PI};
+use std::f64::consts::{LN_2, PI};
 
 use brdfit_core::brdf::fresnel;
 use brdfit_core::geometry::Sample;
@@ -13,29 +14,8 @@ use super::reflectance::reflectance;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values, View};
 use from_data::{Line, Read};
-
-/// The peak of a lobe is searched up to this far from the normal, radians (89.9 degrees).
-const HORIZON: f64 = 0.9989 * FRAC_PI_2;
-
-/// A number with its standard error, in the same unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Value {
-    /// The best value.
-    pub value: f64,
-    /// Its standard error by the delta method; infinite where the 95 % interval is the whole range that it can have.
-    pub stderr: f64,
-}
-
-impl Value {
-    /// With what the difference from what the data have adds to its error.
-    fn with(self, from_data: Option<Value>) -> Value {
-        let more = from_data.map_or(0.0, |read| read.stderr);
-        Value {
-            stderr: libm::hypot(self.stderr, more),
-            ..self
-        }
-    }
-}
+pub use shape::Value;
+use shape::{HORIZON, brightest, crossing};
 
 /// The surface lobe in the plane of incidence, without the other terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,7 +184,7 @@ fn peak(
         width,
         from_data: None,
     };
-    peak.from_data = line.and_then(|line| line.peak(material, &lobe, &peak));
+    peak.from_data = line.and_then(|line| line.peak(material, &lobe, value, width));
     let read = peak.from_data;
     // As high as with all the light.
     peak.f = told(
@@ -215,48 +195,4 @@ fn peak(
     let of_width = read.and_then(|read| read.width);
     peak.width = width.map(|width| told(width.with(of_width), PI, factor));
     Some(peak)
-}
-
-/// Where a lobe of slope m around theta_i is brightest: the best of a grid that is dense at theta_i, then golden sections.
-fn brightest(ln_f: &impl Fn(f64) -> f64, theta_i: f64, m: f64) -> f64 {
-    const DEGREES: i32 = 89;
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let mut grid: Vec<f64> = (-DEGREES..=DEGREES)
-        .map(|degree| f64::from(degree).to_radians())
-        .collect();
-    grid.extend((-20..=20).map(|k| theta_i + 0.1 * f64::from(k) * m));
-    grid.extend([HORIZON, -HORIZON]);
-    grid.retain(|theta_s| theta_s.abs() <= HORIZON);
-    grid.sort_by(f64::total_cmp);
-    let values: Vec<f64> = grid.iter().map(|&theta_s| ln_f(theta_s)).collect();
-    let best = (0..grid.len())
-        .max_by(|&a, &b| values[a].total_cmp(&values[b]))
-        .unwrap_or(0);
-    let (mut low, mut high) = (grid[best.saturating_sub(1)], grid[(best + 1).min(grid.len() - 1)]);
-    for _ in 0..60 {
-        let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if ln_f(a) < ln_f(b) {
-            low = a;
-        } else {
-            high = b;
-        }
-    }
-    0.5 * (low + high)
-}
-
-/// Where a function that is positive at `inside` becomes 0 on the way to `end`; `None` if it does not.
-fn crossing(g: impl Fn(f64) -> f64, inside: f64, end: f64) -> Option<f64> {
-    let (mut inside, mut outside) = (inside, end);
-    if g(end).is_nan() || g(end) > 0.0 {
-        return None;
-    }
-    for _ in 0..60 {
-        let middle = 0.5 * (inside + outside);
-        if g(middle) > 0.0 {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    Some(0.5 * (inside + outside))
 }

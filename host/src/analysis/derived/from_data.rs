@@ -9,7 +9,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rayon::prelude::*;
 
-use super::{HORIZON, Peak, Value, brightest, crossing};
+use super::shape::{HORIZON, Value, brightest, crossing};
 use crate::analysis::misfit::lines;
 use crate::analysis::misfit::process::Process;
 use crate::analysis::misfit::smoothed::smoothed;
@@ -78,7 +78,7 @@ impl Line {
     }
 
     /// The peak of the lobe and its width, of which each standard error is what the difference from the model's adds to the error of that; none where the samples do not reach to half of the peak.
-    pub fn peak(&self, material: &Material, lobe: &Material, model: &Peak) -> Option<Read> {
+    pub fn peak(&self, material: &Material, lobe: &Material, f: Value, width: Option<Value>) -> Option<Read> {
         let ln_f = |theta_s: f64| self.ln_lobe(material, lobe, theta_s).unwrap_or(f64::NEG_INFINITY);
         let top = brightest(&ln_f, self.theta_i, lobe.width());
         let ln_top = ln_f(top);
@@ -90,8 +90,8 @@ impl Line {
             stderr: Real::sqrt(self.misfit / 3.0) * (value - of_model.value).abs(),
         };
         Some(Read {
-            f: read(Real::portable_exp(ln_top), model.f),
-            width: model.width.map(|width| read(right - left, width)),
+            f: read(Real::portable_exp(ln_top), f),
+            width: width.map(|width| read(right - left, width)),
         })
     }
 

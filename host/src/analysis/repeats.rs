@@ -255,7 +255,7 @@ pub fn budget(told: &[Told], common: Common) -> Option<Budget> {
     let within = (values.iter().map(|value| value.stderr * value.stderr).sum::<f64>() / count).sqrt();
     let ratio = (between / within) * (between / within);
     let type_a = between / count.sqrt();
-    let type_b = (common.relative * mean).hypot(common.absolute);
+    let type_b = libm::hypot(common.relative * mean, common.absolute);
     let combined = (type_a * type_a + type_b * type_b).sqrt();
     let part = combined / type_a;
     let degrees_of_freedom = (count - 1.0) * part * part * part * part;

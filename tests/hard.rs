@@ -7,7 +7,9 @@ use brdfit::analysis::choose::{self, SETS, Wanted, sets};
 use brdfit::analysis::profile::calibrate::thresholds;
 use brdfit::analysis::profile::profiles;
 use brdfit::engine::models::MODELS;
-use brdfit::engine::{self, FitOptions, Values, joint};
+use brdfit::engine::{self, FitOptions, Method, Values, joint};
+use brdfit::input::Measurement;
+use brdfit::page::section::Section;
 use brdfit_core::geometry::Sample;
 use brdfit_core::search::CANDIDATES;
 use brdfit_suite::hard_scenes::{KINDS, Kind, task};
@@ -113,6 +115,54 @@ fn a_profile_that_meets_a_better_fit_goes_on_from_there() {
     }
     let [_, wide] = profile.intervals;
     assert!(wide.low.value <= found.outcome.params[3] && found.outcome.params[3] <= wide.high.value);
+}
+
+/// A search that misses on purpose.
+fn one_start() -> FitOptions {
+    FitOptions {
+        method: Method::Paper,
+        starts: Some(1),
+        ..FitOptions::default()
+    }
+}
+
+/// Nor is a search of its own with the parameter held where the profile had it.
+#[test]
+fn no_fit_with_a_parameter_held_is_below_the_fit_that_is_profiled() {
+    for (kind, k, place) in [(Kind::Sparse, 1, 3), (Kind::Misfit, 0, 4)] {
+        let samples = task(kind, k).samples;
+        let poor = engine::fit(&samples, &one_start()).unwrap();
+        let all = FitOptions::default();
+        let found = profiles(&samples, &all, poor, &[place], 0).unwrap();
+        for (index, point) in found.list[0].points.iter().enumerate() {
+            let mut least = point.cost;
+            if index % 5 == 0 {
+                let mut held = all;
+                (held.lower[place], held.upper[place]) = (point.value, point.value);
+                least = least.min(engine::fit(&samples, &held).unwrap().cost);
+            }
+            let above = found.outcome.cost / least - 1.0;
+            assert!(above <= 1e-6, "{kind:?} {k}: {above:.1e} above that at {}", point.value);
+        }
+    }
+}
+
+#[test]
+fn no_fit_of_a_report_is_above_the_papers_method() {
+    for (kind, k) in [(Kind::Misfit, 0), (Kind::Sparse, 1), (Kind::Rough, 2), (Kind::Walk, 3)] {
+        let samples = task(kind, k).samples;
+        let squared = (samples.len() * samples.len()) as f64;
+        let lazy = FitOptions {
+            starts: Some(1),
+            ..FitOptions::default()
+        };
+        let scan = Measurement::of_samples("scan", samples, None);
+        let section = Section::new(&scan, &Wanted::One(lazy), None).unwrap();
+        let least = section.survey.minima.iter().map(|minimum| minimum.mse2 * squared);
+        let least = least.fold(section.survey.cost, f64::min);
+        let cost = section.fit.outcome.cost;
+        assert!(cost <= least * (1.0 + 1e-12), "{kind:?} {k}: {cost} is above {least}");
+    }
 }
 
 #[test]

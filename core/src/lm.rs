@@ -342,6 +342,16 @@ impl<R: Real, const P: usize> Fit<R, P> {
         x
     }
 
+    /// Follows a fit that has converged, beyond what its cost can tell, to where the gradient vanishes, so that its end does not depend on its start; in at most so many passes more. Not for an exact fit, of which the gradient is rounding.
+    pub fn settle_within(&mut self, problem: &(impl Problem<R, P> + ?Sized), bounds: &Bounds<R, P>, passes: u32) {
+        let mut model = self.at.hessian;
+        let end = self.passes.saturating_add(passes);
+        while self.stop.is_some_and(Stop::converged)
+            && self.passes < end
+            && self.settle(problem, bounds, &mut model) > 0
+        {}
+    }
+
     /// One step of a fit that has converged, beyond what its cost can tell: to where the gradient vanishes; how many passes it took: one, or none if there is nothing left to gain.
     ///
     /// Along a valley J'J may be a hundredth of the second derivative. So it is corrected in `model`, at first J'J, by the gradients at both ends of each step: the symmetric correction of rank one (Nocedal and Wright 2006, Eq. 6.24), where that leaves it positive along the step.

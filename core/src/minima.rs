@@ -116,18 +116,15 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
     }
 }
 
-/// See [`joins`].
-const JOINS: f64 = 0.01;
-
-/// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within 1 % of cost, and where the residuals, linear as the fit sees them, change by no more than 1 % of the cost on the way: along a valley that is far.
-pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<R, P>) -> bool {
+/// Has an unfinished fit come so near to an end, of which coordinates and cost are given, that it would end there? Within this part of cost, and where the residuals, linear as the fit sees them, change by no more than this part of the cost on the way: along a valley that is far.
+pub(crate) fn joins<R: Real, const P: usize>((x, cost): (&[R; P], R), fit: &Fit<R, P>, part: R) -> bool {
     let mut change = R::ZERO;
     for i in 0..P {
         for j in 0..P {
             change += (x[i] - fit.x[i]) * (x[j] - fit.x[j]) * fit.at.hessian[i][j];
         }
     }
-    close(cost, fit.at.cost, R::of(JOINS)) && change < R::of(JOINS) * cost
+    close(cost, fit.at.cost, part) && change < part * cost
 }
 
 fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {

@@ -3,8 +3,8 @@
 //! # The default method
 //! 1. A round proposes candidates (`candidate.rs`), each with the weights that fit best. The most promising are levelled, which gives their cost; the best of those are fitted for a few passes; the best of these converges, and with it the first that has other slopes than the best end, and each that is near the best cost known, unless it comes so near to an end already found that it would end there.
 //! 2. After four or five rounds most scans are settled: the best end was reached more than once, with the same slopes, and no fit with other slopes is anywhere near it, nor the best nearly as poor as any candidate. Where that is not so, further rounds look at one part of the range of slopes after the other.
-//! 3. Then come variations of the best: the same slopes, other kinds of index. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart. Where other slopes are near, slopes that pairs of samples tell are tried as well; and where the best is then on an upper bound, weights near their bounds, with one part of the range of slopes after the other.
-//! 4. The best is brought to the caller's tolerance; until then 1e-8 is enough. If that is rounding, it then goes on along its valley by the gradient, as costs tell no more, so that the end is the same whatever start led there.
+//! 3. Then come variations of the best: the same slopes, other kinds of index. Minima that differ in the regime of F alone (dielectric, metal, n near 1) lie beside each other, and this is what tells them apart. Where other slopes are near, slopes that pairs of samples tell are tried as well; and where the best is then on an upper bound, or the rounds did not settle a scan that the model does not follow well, weights near their bounds, with one part of the range of slopes after the other.
+//! 4. The best is brought to the caller's tolerance; until then 3e-8 is enough. If that is rounding, it then goes on along its valley by the gradient, as costs tell no more, so that the end is the same whatever start led there.
 //!
 //! It is made in steps of at most one pass each ([`Search::step`]), with its state in memory of the caller; [`search`] takes them all.
 //!
@@ -18,7 +18,7 @@ use crate::minima::Minima;
 use crate::real::Real;
 use crate::start;
 
-pub use steps::{CANDIDATES, FITS, Phase, Progress, Search};
+pub use steps::{CANDIDATES, FITS, Phase, Progress, SETTLING, Search};
 
 /// Minima that [`search`] remembers.
 pub const MINIMA: usize = 32;

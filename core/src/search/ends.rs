@@ -22,6 +22,10 @@ pub(super) const EXACT: f64 = 1e-9;
 pub(super) const QUIET: f64 = 1e-4;
 /// Above this part the model does not follow the scan, and a minimum that was not met may do so better: the first rounds do not settle it.
 pub(super) const FOLLOWED: f64 = 0.1;
+/// Below this part it follows it so well that weights near their bounds are tried only where the best has one there.
+pub(super) const FOLLOWED_WELL: f64 = 0.03;
+/// A fit joins an end within this part of the cost (see [`minima::joins`]); within the second where the model does not follow the scan, as basins differ by less there.
+const JOINS: (f64, f64) = (1e-2, 1e-3);
 /// Ends that are remembered.
 const ENDS: usize = 16;
 /// Two ends of the same cost, to this part, are one.
@@ -80,7 +84,7 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         self.list.first().is_none_or(|best| cost < best.cost * factor)
     }
 
-    /// Is the best cost below this part, [`EXACT`], [`QUIET`] or [`FOLLOWED`], of that of a poor candidate?
+    /// Is the best cost below this part, [`EXACT`], [`QUIET`], [`FOLLOWED`] or [`FOLLOWED_WELL`], of that of a poor candidate?
     #[cfg_attr(target_os = "none", inline(never))]
     pub fn is_below(&self, part: R) -> bool {
         let best = self.list.first();
@@ -132,11 +136,12 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         flat: &mut bool,
     ) -> bool {
         let converged = fit.stop.is_some();
+        let joins = R::of(if self.is_below(FOLLOWED) { JOINS.0 } else { JOINS.1 });
         let place = self.list.iter().position(|end| {
             if converged {
                 minima::close(end.cost, fit.at.cost, R::of(SAME))
             } else {
-                minima::joins((&end.x, end.cost), fit)
+                minima::joins((&end.x, end.cost), fit, joins)
             }
         });
         if place.is_some() || converged {

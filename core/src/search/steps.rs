@@ -27,11 +27,11 @@ const SLOPES_BEGUN: usize = 4;
 const SHORT: u32 = 4;
 const VARIATION_SHORT: u32 = 3;
 /// [`Options::cost_tolerance`] of the fits of a search; the best is then brought to that of the caller.
-const ROUGH: f64 = 1e-8;
+const ROUGH: f64 = 3e-8;
 /// [`Options::max_passes`] of these fits.
 const ROUGH_PASSES: u32 = 100;
 /// Passes at most in which the best, at the end, comes to stand still.
-const SETTLING: u32 = 10;
+pub const SETTLING: u32 = 10;
 
 /// How far a search is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

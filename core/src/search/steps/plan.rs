@@ -4,7 +4,7 @@ use super::{Kind, Phase, Search, Task};
 use crate::lm::Bounds;
 use crate::propose::{GROUPS, INDICES};
 use crate::real::Real;
-use crate::search::ends::{EXACT, FOLLOWED};
+use crate::search::ends::{EXACT, FOLLOWED, FOLLOWED_WELL};
 use crate::search::{BANDS, Scene};
 
 /// The default method makes at most this many candidates, if nothing else is asked for.
@@ -16,6 +16,8 @@ const ROUNDS: u32 = 5;
 const FIRST_BANDS: u32 = 3;
 /// How often each part is looked at where that does not settle it.
 const CYCLES: u32 = 3;
+/// The same where the model follows the scan.
+const CYCLES_FOLLOWED: u32 = 2;
 /// Candidates of a round.
 const ROUND: u32 = 15;
 /// Variations are made again of a better end that they lead to, so often at most.
@@ -26,7 +28,7 @@ const HITS: (u32, u32) = (2, 3);
 const VARIATIONS: u32 = INDICES.len() as u32;
 /// Candidates with other slopes than the best.
 const SLOPES: u32 = 16;
-/// Rounds with weights near their bounds, where the best is on an upper bound.
+/// Rounds with weights near their bounds, where the best is on an upper bound, or rounds did not settle a scan that the model does not follow well.
 const CORNERS: u32 = 3 * BANDS;
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
@@ -64,7 +66,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         if self.round == ROUNDS + FIRST_BANDS {
             return agreed(HITS.1);
         }
-        false
+        self.round >= ROUNDS + CYCLES_FOLLOWED * BANDS && ends.is_below(FOLLOWED)
     }
 
     /// Is a parameter of the best end, which is not held, as large as it may be?
@@ -78,7 +80,9 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         let groups = GROUPS.len() as u32;
         let mut rounds = groups;
         if self.unsettled {
-            rounds += if self.is_on_upper_bound() { 1 + CORNERS } else { 1 };
+            let went_on = self.made > (ROUNDS + FIRST_BANDS) * ROUND;
+            let corners = self.is_on_upper_bound() || (went_on && !self.ends.is_below(FOLLOWED_WELL));
+            rounds += if corners { 1 + CORNERS } else { 1 };
         }
         if self.group >= rounds {
             let least = self.centre.1 * R::of(1.0 - 1e-6);

@@ -4,7 +4,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::joint::Joint;
 use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::model::Parameter;
-use brdfit_core::search::{Found, search, search_from};
+use brdfit_core::search::{Found, SETTLING, search, search_from};
 use brdfit_core::uncertainty::Uncertainty;
 
 use super::beside::{Beside, Rows, is_above};
@@ -224,7 +224,7 @@ impl<const P: usize> Scans<'_, P> {
                 found.best.at.cost - priors - limit
             });
             Best {
-                best: together.search(&problem),
+                best: self.settled(setup, &problem, &together.bounds, together.search(&problem)),
                 separate: beside.sum(),
             }
         })
@@ -234,8 +234,23 @@ impl<const P: usize> Scans<'_, P> {
         self.with(setup, |scans, _| {
             let problem = Joint::new(scans, self.is_shared());
             let bounds = problem.bounds::<f64, COORDINATES>(&self.layout.bounds(self.options));
-            lm::fit(&problem, &bounds, x, &Options::default())
+            let fit = lm::fit(&problem, &bounds, x, &Options::default());
+            self.settled(setup, &problem, &bounds, fit)
         })
+    }
+
+    /// A joint fit brought to where its gradient vanishes, so that it does not depend on its start; as it is where that is at a wall, or rounding.
+    fn settled(
+        &self,
+        setup: &Setup,
+        problem: &Joint<&Kernel<f64, P>, P>,
+        bounds: &Bounds<f64, COORDINATES>,
+        mut fit: Fit<f64, COORDINATES>,
+    ) -> Fit<f64, COORDINATES> {
+        if setup.steep == 0.0 && fit.at.cost > EXACT * counted(self.all) as f64 {
+            fit.settle_within(problem, bounds, SETTLING);
+        }
+        fit
     }
 
     /// Sum of squared residuals of the samples, of priors, and of what is above its limit.
@@ -276,6 +291,9 @@ pub fn counted(all: &[&[Sample<f64>]]) -> usize {
 const MINIMA: usize = 4;
 /// How often the joint fit is searched from its own shared parameters, at most.
 const LOOPS: usize = 4;
+
+/// Below this the mean square of the residuals of ln f is rounding, and so is the gradient.
+const EXACT: f64 = 1e-22;
 
 /// Scans with what each says on its own.
 struct Together<'a, const P: usize> {

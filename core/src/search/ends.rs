@@ -136,7 +136,11 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
         flat: &mut bool,
     ) -> bool {
         let converged = fit.stop.is_some();
-        let joins = R::of(if self.is_below(FOLLOWED) { JOINS.0 } else { JOINS.1 });
+        let joins = R::of(if self.is_below(R::of(FOLLOWED)) {
+            JOINS.0
+        } else {
+            JOINS.1
+        });
         let place = self.list.iter().position(|end| {
             if converged {
                 minima::close(end.cost, fit.at.cost, R::of(SAME))

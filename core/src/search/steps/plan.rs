@@ -66,7 +66,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         if self.round == ROUNDS + FIRST_BANDS {
             return agreed(HITS.1);
         }
-        self.round >= ROUNDS + CYCLES_FOLLOWED * BANDS && ends.is_below(FOLLOWED)
+        self.round >= ROUNDS + CYCLES_FOLLOWED * BANDS && ends.is_below(R::of(FOLLOWED))
     }
 
     /// Is a parameter of the best end, which is not held, as large as it may be?
@@ -81,7 +81,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         let mut rounds = groups;
         if self.unsettled {
             let went_on = self.made > (ROUNDS + FIRST_BANDS) * ROUND;
-            let corners = self.is_on_upper_bound() || (went_on && !self.ends.is_below(FOLLOWED_WELL));
+            let corners = self.is_on_upper_bound() || (went_on && !self.ends.is_below(R::of(FOLLOWED_WELL)));
             rounds += if corners { 1 + CORNERS } else { 1 };
         }
         if self.group >= rounds {

@@ -44,6 +44,20 @@ fn table_is_what_the_host_computes() {
     );
 }
 
+#[test]
+fn a_search_in_steps_ends_as_one_in_one_call_on_every_machine() {
+    // How it ended, its cost and its parameters.
+    let ended = |text: &'static str| -> Vec<Vec<&str>> {
+        let lines: Vec<_> = text.lines().collect();
+        let fits = lines.windows(2 + programs::P);
+        let converged = fits.filter(|fit| fit[0].ends_with("stop cost"));
+        converged.map(<[_]>::to_vec).collect()
+    };
+    let in_steps = ended(include_str!("firmware/programs/steps.out"));
+    assert_eq!(in_steps.len(), 2);
+    assert_eq!(in_steps, ended(include_str!("firmware/programs/search.out")));
+}
+
 /// Name and version of each package of a lock file.
 fn packages(lock: &str) -> Vec<(&str, &str)> {
     lock.split("[[package]]")

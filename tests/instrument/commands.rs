@@ -140,7 +140,7 @@ fn profiles_honour_all() {
         "n=1.50+-0.02",
         "--fit-offset",
         "--bootstrap",
-        "20",
+        "5",
     ];
     let shifted = json(&[&["profile", &file, "--parameter", "m"], &parts[..]].concat());
     let interval = &shifted["parameters"][0]["intervals"][1];

@@ -62,7 +62,12 @@ fn with_all<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
 
 /// A scan whose detector is off by half a degree.
 fn scan(folder: &TempDir) -> String {
-    let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 5);
+    scan_by(folder, 4)
+}
+
+/// The same with a sample each so many degrees.
+fn scan_by(folder: &TempDir, step: usize) -> String {
+    let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], step, 80), 0.02, 5);
     let row = |sample: &Sample<f64>| {
         let (theta_i, theta_s) = (sample.theta_i.to_degrees(), sample.theta_s.to_degrees() + 0.5);
         format!("{theta_i},{theta_s},{}\n", sample.brdf)
@@ -140,8 +145,9 @@ fn profiles_honour_all() {
         "n=1.50+-0.02",
         "--fit-offset",
         "--bootstrap",
-        "5",
+        "20",
     ];
+    let file = scan_by(&folder, 8);
     let shifted = json(&[&["profile", &file, "--parameter", "m"], &parts[..]].concat());
     let interval = &shifted["parameters"][0]["intervals"][1];
     assert!(

@@ -77,6 +77,18 @@ fn turned(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..a[0].len()).map(|j| a.iter().map(|row| row[j]).collect()).collect()
 }
 
+/// Short and long, nearly alone and under noise.
+const PROCESSES: [Process; 4] = [
+    process(0.3, 0.9, false),
+    process(0.3, 0.9, true),
+    process(1.0, 0.3, true),
+    process(0.02, 0.999, false),
+];
+
+const fn process(length: f64, part: f64, smooth: bool) -> Process {
+    Process { length, part, smooth }
+}
+
 #[test]
 fn filter_and_sandwich_are_those_of_the_whole_matrix() {
     let mut noise = Noise::new(1, 0);
@@ -109,13 +121,7 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
     let degrees = (all.len() - COLUMNS) as f64;
     let (mut of_ln, mut of_covariance) = (0.0f64, 0.0f64);
     let mut before = None;
-    for (length, part, smooth) in [
-        (0.3, 0.9, false),
-        (0.3, 0.9, true),
-        (1.0, 0.3, true),
-        (0.02, 0.999, false),
-    ] {
-        let process = Process { length, part, smooth };
+    for process in PROCESSES {
         let matrix = |of: &dyn Fn(&Point, &Point) -> f64| -> Vec<Vec<f64>> {
             let one = |i: usize, j: usize| if i == j { 1.0 } else { of(all[i], all[j]) };
             (0..all.len())
@@ -149,7 +155,7 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         assert!(before.replace(ln).is_none_or(|before: f64| (before - ln).abs() > 1e-3));
         // The sandwich: within lines, and with what lines have in common.
         let mut common = Common::new(&residuals);
-        common.correlation = 0.6 * part;
+        common.correlation = 0.6 * process.part;
         let shared = |a: &Point, b: &Point| {
             let own = if a.line == b.line {
                 0.4 * kernel(process, a.angle - b.angle)
@@ -184,13 +190,7 @@ fn a_smoothed_line_is_the_mean_by_the_whole_matrix() {
     angles[7] = angles[6];
     let values: Vec<f64> = angles.iter().map(|_| noise.normal()).collect();
     let mut worst = 0.0f64;
-    for (length, part, smooth) in [
-        (0.3, 0.9, false),
-        (0.3, 0.9, true),
-        (1.0, 0.3, true),
-        (0.02, 0.999, false),
-    ] {
-        let process = Process { length, part, smooth };
+    for process in PROCESSES {
         let row = |&a: &f64| angles.iter().map(|&b| kernel(process, a - b)).collect();
         let own: Vec<Vec<f64>> = angles.iter().map(row).collect();
         let mut whole = own.clone();

@@ -208,6 +208,45 @@ fn what_is_proved_is_kept() {
     }
 }
 
+/// Of a batch that is proved, an interrupt keeps the scans whose proofs are whole, and none that it cut short.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_batch_keeps_whole_proofs_alone() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = scans(root.path());
+    let mut child = endless(
+        &["batch", "00.csv", "--certify", "0.001%", "--out", "../one.json"],
+        &folder,
+    );
+    listens(&mut child);
+    signal(&child, "-INT");
+    let (code, output, errors) = ended(child);
+    assert_eq!((code, output.as_str()), (Some(130), ""), "{errors}");
+    assert!(errors.contains("0 of 1 files are done"), "{errors}");
+    assert!(!root.path().join("one.json").exists());
+
+    // With its index known, each scan is proved in some hundred boxes.
+    let files: Vec<String> = (0..12).map(|index| format!("{index:02}.csv")).collect();
+    let proved = |out: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_brdfit"));
+        command.args(["batch", "--certify", "10%", "--fix", "n=1.5", "--threads", "1"]);
+        command.args(["--resume", "--out"]).arg(out).args(&files);
+        command.current_dir(&folder).stdout(Stdio::null()).stderr(Stdio::null());
+        command
+    };
+    let (whole, out) = (root.path().join("whole.json"), root.path().join("results.json"));
+    assert!(proved(&whole).status().unwrap().success());
+    let partial = root.path().join("results.json.partial");
+    let status = interrupted(proved(&out).spawn().unwrap(), &partial, "-INT");
+    assert_eq!(status.code(), Some(130));
+    let done = fs::read_to_string(&partial).unwrap().lines().count() - 1;
+    assert!((3..files.len()).contains(&done) && !out.exists(), "{done}");
+    assert!(proved(&out).status().unwrap().success());
+    let text = fs::read_to_string(&out).unwrap();
+    assert_eq!(text.matches("\"complete\": true").count(), files.len());
+    assert!(text == fs::read_to_string(&whole).unwrap());
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_result_that_nobody_reads_is_not_waited_for() {

@@ -1,18 +1,18 @@
 //! Profile likelihood: the cost over one parameter, minimised over the others, and the intervals that follow.
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 use rayon::prelude::*;
 
-use super::misfit;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
 pub mod findings;
 pub mod hold;
+mod intervals;
 
-use calibrate::{LEVELS, threshold};
+use calibrate::LEVELS;
 use hold::{Held, Point};
+use intervals::referred;
 
 /// Each step away from the best value is longer than the last by this factor.
 const GROWTH: f64 = 1.25;
@@ -79,12 +79,15 @@ pub struct Profiles {
     pub list: Vec<Profile>,
 }
 
-/// A point is better than the fit if its cost is lower by more than this part.
+/// A point is worth profiles anew if its cost is lower by more than this part.
 const BETTER: f64 = 1e-6;
-/// Better fits that are begun from, at most.
+/// A point is below the fit if its cost is lower by more than this part; what is less is rounding, or the end of a valley.
+const BELOW: f64 = 1e-9;
+/// Better fits that profiles are made anew for, at most.
 const RESTARTS: usize = 8;
 
 /// Profiles the parameters in these places; where a point is better than the fit, the fit goes on from there and the profiles are made again.
+/// After eight times they are not, but the intervals still refer to the best fit: no point of any profile is below it.
 ///
 /// The threads of the current rayon pool share them, and change no bit; for `copies` see [`profile`].
 ///
@@ -97,26 +100,69 @@ pub fn profiles(
     places: &[usize],
     copies: u32,
 ) -> Result<Profiles, FitError> {
-    let mut outcome = outcome;
-    let mut improved_from = None;
-    for restart in 0.. {
+    restarted(samples, options, outcome, places, copies, RESTARTS)
+}
+
+/// The same with so many restarts.
+fn restarted(
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: Outcome,
+    places: &[usize],
+    copies: u32,
+    restarts: usize,
+) -> Result<Profiles, FitError> {
+    let mut found = Profiles {
+        outcome,
+        improved_from: None,
+        list: Vec::new(),
+    };
+    let mut restart = 0;
+    loop {
         // Copies take most of the time, and are made when the fit is sure.
-        let mut list = list(samples, options, &outcome, places, 0)?;
-        if copies > 0 && least(&list).is_none_or(|point| !is_better(samples, options, &point, &outcome)) {
-            list = self::list(samples, options, &outcome, places, copies)?;
+        found.list = list(samples, options, &found.outcome, places, 0)?;
+        if copies > 0 && found.lower(samples, options, BETTER).is_none() {
+            found.list = list(samples, options, &found.outcome, places, copies)?;
         }
-        let better = least(&list).filter(|point| is_better(samples, options, point, &outcome));
-        let Some(better) = better.filter(|_| restart < RESTARTS) else {
-            return Ok(Profiles {
-                outcome,
-                improved_from,
-                list,
-            });
+        let Some(better) = found.lower(samples, options, BETTER).filter(|_| restart < restarts) else {
+            break;
         };
-        improved_from = improved_from.or(Some(outcome.cost));
-        outcome = engine::fit_from(samples, options, &[better.params, outcome.params])?;
+        found.adopt(samples, options, &better)?;
+        restart += 1;
     }
-    unreachable!("the last restart returns")
+    // The ends of intervals can be below the fit again that they are sought from, but lower each time. In `f32` a fit may stay above its point.
+    let mut least = f64::INFINITY;
+    while let Some(better) = found.lower(samples, options, BELOW).filter(|point| point.cost < least) {
+        least = better.cost;
+        found.adopt(samples, options, &better)?;
+        let outcome = &found.outcome;
+        let anew = found.list.into_par_iter();
+        found.list = anew
+            .map(|profile| around(profile, samples, options, outcome, copies))
+            .collect::<Result<_, _>>()?;
+    }
+    Ok(found)
+}
+
+impl Profiles {
+    /// The best point of all profiles if it is below the fit by more than this part, and by more than what rounding to `f32` may have left.
+    fn lower(&self, samples: &[Sample<f64>], options: &FitOptions, part: f64) -> Option<Point> {
+        let points = self.list.iter().flat_map(|profile| &profile.points);
+        let least = points.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let exact = engine::descend(samples, options, &[self.outcome.params]).ok().flatten();
+        let cost = exact.map_or(self.outcome.cost, |(cost, _)| cost);
+        (least.cost < cost * (1.0 - part)).then_some(*least)
+    }
+
+    /// Goes on from a better point.
+    fn adopt(&mut self, samples: &[Sample<f64>], options: &FitOptions, better: &Point) -> Result<(), FitError> {
+        let before = self.outcome.cost;
+        self.outcome = engine::fit_from(samples, options, &[better.params, self.outcome.params])?;
+        if self.outcome.cost < before * (1.0 - BETTER) {
+            self.improved_from = self.improved_from.or(Some(before));
+        }
+        Ok(())
+    }
 }
 
 fn list(
@@ -131,16 +177,28 @@ fn list(
         .collect()
 }
 
-/// The best point of all profiles.
-fn least(list: &[Profile]) -> Option<Point> {
-    let points = list.iter().flat_map(|profile| &profile.points);
-    points.min_by(|a, b| a.cost.total_cmp(&b.cost)).copied()
+/// The points of a profile with a better fit that was met beside it, and the intervals that refer to that.
+fn around(
+    mut profile: Profile,
+    samples: &[Sample<f64>],
+    options: &FitOptions,
+    outcome: &Outcome,
+    copies: u32,
+) -> Result<Profile, FitError> {
+    let held = Held::new(samples, options, outcome, profile.index);
+    profile.points.push(exact(samples, options, outcome, profile.index)?);
+    referred(profile, &held, outcome, copies)
 }
 
-/// Is a point better than a fit, by more than what rounding to `f32` may have left?
-fn is_better(samples: &[Sample<f64>], options: &FitOptions, point: &Point, outcome: &Outcome) -> bool {
-    let exact = engine::descend(samples, options, &[outcome.params]).ok().flatten();
-    point.cost < exact.map_or(outcome.cost, |(cost, _)| cost) * (1.0 - BETTER)
+/// The point of a fit; what rounding to `f32` has left is made up.
+fn exact(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, index: usize) -> Result<Point, FitError> {
+    let (cost, params) =
+        engine::descend(samples, options, &[outcome.params])?.unwrap_or((outcome.cost, outcome.params));
+    Ok(Point {
+        value: params[index],
+        cost,
+        params,
+    })
 }
 
 /// Profiles parameter `index` of the model from bound to bound, starting from a fit of these samples with these options; in `f64`.
@@ -157,22 +215,10 @@ pub fn profile(
     index: usize,
     copies: u32,
 ) -> Result<Profile, FitError> {
-    let degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
-    // The ratio of likelihoods of independent residuals, scaled to the variance that they have (Rotnitzky and Jewell 1990).
-    let known = misfit::uncertainty(samples, outcome);
-    let inflation = misfit::inflation(&known, &outcome.uncertainty, index);
-    let limits = LEVELS.map(|level| inflation * threshold(level, known.effective.max(1.0)));
     let held = Held::new(samples, options, outcome, index);
     let (lower, upper) = (options.lower[index], options.upper[index]);
     let at = outcome.params[index];
-    // What rounding to f32 has left is made up here.
-    let (cost, params) =
-        engine::descend(samples, options, &[outcome.params])?.unwrap_or((outcome.cost, outcome.params));
-    let best = Point {
-        value: params[index],
-        cost,
-        params,
-    };
+    let best = exact(samples, options, outcome, index)?;
     let first = first_step(outcome, index, upper - lower);
     let mut points = vec![best];
     for end in [lower, upper] {
@@ -191,46 +237,21 @@ pub fn profile(
         }
         points.extend(side);
     }
-    points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    points.dedup_by(|b, a| a.value == b.value);
-    let mut profile = Profile {
+    let whole = |value| End { value, at_bound: true };
+    let profile = Profile {
         index,
         name: options.model.parameters[index].name,
-        best: *points.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(&best),
+        best,
         points,
-        degrees_of_freedom,
-        limits,
+        degrees_of_freedom: outcome.uncertainty.degrees_of_freedom,
+        limits: [0.0; 2],
         intervals: LEVELS.map(|level| Interval {
             level,
-            low: End {
-                value: lower,
-                at_bound: true,
-            },
-            high: End {
-                value: upper,
-                at_bound: true,
-            },
+            low: whole(lower),
+            high: whole(upper),
         }),
     };
-    // The wider first: on its way it may meet values that belong to the narrower.
-    for (k, limit) in limits.into_iter().enumerate().rev() {
-        for high in [false, true] {
-            let mut value = crossing(&mut profile, &held, limit, high)?;
-            if copies > 0 {
-                let at = value.unwrap_or(if high { upper } else { lower });
-                let null = profile.points.iter().find(|point| point.value == at).unwrap_or(&best);
-                let scale = outcome.uncertainty.scale;
-                let limits = calibrate::thresholds(samples, options, index, &null.params, scale, copies)?;
-                value = crossing(&mut profile, &held, inflation * limits[k], high)?;
-            }
-            if let Some(value) = value {
-                let end = End { value, at_bound: false };
-                let interval = &mut profile.intervals[k];
-                *(if high { &mut interval.high } else { &mut interval.low }) = end;
-            }
-        }
-    }
-    Ok(profile)
+    referred(profile, &held, outcome, copies)
 }
 
 /// A first step that is short against the standard error, if there is one, and the value itself.
@@ -255,40 +276,46 @@ fn outward(at: f64, end: f64, first: f64) -> Vec<f64> {
     values
 }
 
-/// Where the rise passes `limit` outermost on one side; adds the points it makes. `None` if it does not before the bound.
-fn crossing(profile: &mut Profile, held: &Held, limit: f64, high: bool) -> Result<Option<f64>, FitError> {
-    const ROUNDS: usize = 30;
-    const CLOSE: f64 = 1e-4;
-    let mut order: Vec<Point> = profile.points.clone();
-    if !high {
-        order.reverse();
-    }
-    let Some(last) = order.iter().rposition(|point| profile.rise(point) <= limit) else {
-        return Ok(None);
-    };
-    let Some(mut outside) = order.get(last + 1).copied() else {
-        return Ok(None);
-    };
-    let mut inside = order[last];
-    for _ in 0..ROUNDS {
-        // The root of the rise is nearly linear in the parameter.
-        let root = |rise: f64| Real::sqrt(rise.max(0.0));
-        let (a, b) = (root(profile.rise(&inside)), root(profile.rise(&outside).min(1e6)));
-        let part = ((root(limit) - a) / (b - a)).clamp(0.05, 0.95);
-        let value = inside.value + part * (outside.value - inside.value);
-        let point = held.at(value, &[inside.params, outside.params], false)?;
-        profile.points.push(point);
-        if profile.rise(&point) <= limit {
-            inside = point;
-        } else {
-            outside = point;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Method;
+    use crate::input::{ReadOptions, parse};
+
+    #[test]
+    fn no_point_is_below_the_fit_when_profiles_are_not_made_anew() {
+        let table = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/data/testdata2_sym_seed1.csv"));
+        let samples = &parse("scan", table, &ReadOptions::default()).unwrap()[0].samples;
+        let options = FitOptions::default();
+        let least = engine::fit(samples, &options).unwrap().cost;
+        let lazy = FitOptions {
+            method: Method::Paper,
+            starts: Some(1),
+            ..options
+        };
+        let poor = engine::fit(samples, &lazy).unwrap();
+        assert!(poor.cost > 1.1 * least, "{} {least}", poor.cost);
+        // Places of rho_d and m.
+        let found = restarted(samples, &options, poor.clone(), &[0, 3], 0, 0).unwrap();
+        assert_eq!(found.improved_from, Some(poor.cost));
+        for profile in &found.list {
+            for point in &profile.points {
+                assert!(found.outcome.cost <= point.cost * (1.0 + BELOW));
+                assert!(profile.best.cost <= point.cost);
+            }
+            assert!((profile.best.cost / found.outcome.cost - 1.0).abs() <= BELOW);
+            let at = found.outcome.params[profile.index];
+            for interval in profile.intervals {
+                assert!(
+                    (interval.low.value..=interval.high.value).contains(&at),
+                    "{interval:?} {at}"
+                );
+                for end in [interval.low, interval.high].into_iter().filter(|end| !end.at_bound) {
+                    let at = profile.points.iter().find(|point| point.value == end.value).unwrap();
+                    let limit = profile.limits[usize::from(interval.level == LEVELS[1])];
+                    assert!((profile.rise(at) / limit - 1.0).abs() < 1e-3);
+                }
+            }
         }
-        let gap = (outside.value - inside.value).abs();
-        if (root(profile.rise(&point)) / root(limit) - 1.0).abs() < CLOSE || gap < CLOSE * CLOSE * value.abs() {
-            inside = point;
-            break;
-        }
     }
-    profile.points.sort_by(|a, b| a.value.total_cmp(&b.value));
-    Ok(Some(inside.value))
 }

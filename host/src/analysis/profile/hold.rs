@@ -31,9 +31,9 @@ pub fn hold(
 
 /// A scan with one parameter held.
 pub(super) struct Held<'a> {
-    samples: &'a [Sample<f64>],
-    options: &'a FitOptions,
-    index: usize,
+    pub samples: &'a [Sample<f64>],
+    pub options: &'a FitOptions,
+    pub index: usize,
     minima: Vec<Values>,
 }
 

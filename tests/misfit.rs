@@ -8,8 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdfit::analysis::bootstrap::{Noise, bootstrap};
 use brdfit::analysis::derived::{self, Derived, Value};
+use brdfit::analysis::misfit::likelihood::likelihoods;
 use brdfit::analysis::misfit::mixture::matched;
-use brdfit::analysis::misfit::process::{Common, Process, Residuals, covariance, likelihood};
+use brdfit::analysis::misfit::process::{Process, Residuals};
+use brdfit::analysis::misfit::sandwich::{Common, covariance};
 use brdfit::analysis::misfit::smoothed::smoothed;
 use brdfit::analysis::misfit::{coverage_factor, lines, uncertainty};
 use brdfit::engine::{self, FitOptions, Material, Model, Until};
@@ -121,7 +123,7 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
     let degrees = (all.len() - COLUMNS) as f64;
     let (mut of_ln, mut of_covariance) = (0.0f64, 0.0f64);
     let mut before = None;
-    for process in PROCESSES {
+    for (place, process) in PROCESSES.into_iter().enumerate() {
         let matrix = |of: &dyn Fn(&Point, &Point) -> f64| -> Vec<Vec<f64>> {
             let one = |i: usize, j: usize| if i == j { 1.0 } else { of(all[i], all[j]) };
             (0..all.len())
@@ -148,7 +150,7 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         let explained: f64 = best.iter().zip(&j_r).map(|(x, y)| x[0] * y[0]).sum();
         let rest = normal[COLUMNS][COLUMNS] - explained;
         let expected = -0.5 * (degrees * rest.ln() + ln_v + ln_j);
-        let (ln, variance) = likelihood(&residuals, process, degrees);
+        let (ln, variance) = likelihoods(&residuals, &PROCESSES, degrees)[place];
         of_ln = of_ln
             .max((ln - expected).abs())
             .max((variance * degrees / rest - 1.0).abs());
@@ -166,7 +168,13 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         };
         let pairs = [
             (covariance(&residuals, process, variance), v),
-            (common.covariance(&residuals, process, variance), matrix(&shared)),
+            (
+                common
+                    .covariances(&residuals, &[(process, variance)])
+                    .unwrap()
+                    .remove(0),
+                matrix(&shared),
+            ),
         ];
         for (got, v) in pairs {
             let meat = product(&turned(&rows), &product(&v, &rows));

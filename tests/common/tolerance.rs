@@ -307,8 +307,8 @@ pub const TAIL_DERIVATIVE: Tolerance = Tolerance(2.0);
 pub const TABLE_ROUND_TRIP: Tolerance = Tolerance(1e-6);
 /// Values of RGL tensor files, read back, relative and times cos theta_s: they have single precision.
 pub const RGL_ROUND_TRIP: Tolerance = Tolerance(1e-6);
-/// ln of the restricted likelihood by the filter against that of whole matrices; absolute; measured 4.4e-16.
-pub const RESTRICTED_LIKELIHOOD: Tolerance = Tolerance(4e-15);
+/// ln of the restricted likelihood by the filter against that of whole matrices; absolute; measured 2.2e-16.
+pub const RESTRICTED_LIKELIHOOD: Tolerance = Tolerance(2e-15);
 /// The sandwich by recursion against that of whole matrices; measured 1e-14.
 pub const SANDWICH: Tolerance = Tolerance(1e-13);
 /// What of residuals is their process, against the whole matrix; residuals are of size 1; measured 1.2e-13.

@@ -6,10 +6,13 @@
 //! The covariance is the mean over all lengths and parts, by their likelihood; how much it varies among them widens the tails ([`mixture`]), as fewer degrees of freedom do.
 
 mod along;
+pub mod likelihood;
 pub mod lines;
 pub mod mixture;
+pub mod nodes;
 pub mod process;
 pub mod rows;
+pub mod sandwich;
 pub mod smoothed;
 
 use brdfit_core::geometry::Sample;
@@ -22,7 +25,8 @@ use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Outcome, Values, View};
 use along::Along;
 use mixture::Student;
-use process::{Node, Process, Residuals};
+use nodes::Node;
+use process::{Process, Residuals};
 
 /// ln of the likelihood must be so much above that of independence, which one in six scans with independent errors reaches; below it errors are theirs.
 ///
@@ -62,7 +66,7 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 /// `None` where independence is not refuted, or nothing can be said.
 fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty, evidence: f64) -> Option<Uncertainty> {
     let (all, seen) = of_fit(samples, view, known)?;
-    let nodes = process::nodes(&all, known.degrees_of_freedom, evidence)?;
+    let nodes = nodes::nodes(&all, known.degrees_of_freedom, evidence)?;
     Some(with(samples, view, known, &seen, &nodes))
 }
 
@@ -103,8 +107,8 @@ impl Inflation {
     /// The factor is the mean trace of the sandwich, in units of the variance that the residuals have: what the penalty of a criterion grows by where its likelihood leaves correlation out (Varin and Vidoni 2005; Gao and Song 2010).
     /// Lines count as independent, other than in errors: what all have in common is no chance, but what another model may explain.
     pub fn of(all: &Residuals, degrees_of_freedom: usize) -> Option<Inflation> {
-        let process = process::likeliest(all, degrees_of_freedom, SURE)?;
-        let covariance = process::covariance(all, process, 1.0);
+        let process = nodes::likeliest(all, degrees_of_freedom, SURE)?;
+        let covariance = sandwich::covariance(all, process, 1.0);
         let trace: f64 = (0..all.columns).map(|k| covariance[k][k]).sum();
         let factor = (trace / all.columns as f64).max(1.0);
         factor.is_finite().then_some(Inflation { process, factor })
@@ -175,7 +179,7 @@ fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize
     let count = seen.len();
     let mean = Mean::of(nodes, known.degrees_of_freedom);
     let (covariance, student) = (&mean.covariance, mean.student);
-    let root = process::cholesky(covariance);
+    let root = sandwich::cholesky(covariance);
     let mut axes = known.axes.clone();
     for (i, &place) in seen.iter().enumerate() {
         axes[place] = Values::from_fn(known.places.len(), |k| {

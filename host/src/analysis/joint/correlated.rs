@@ -3,7 +3,8 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-use crate::analysis::misfit::process::{self, Residuals};
+use crate::analysis::misfit::nodes;
+use crate::analysis::misfit::process::Residuals;
 use crate::analysis::misfit::{EVIDENCE, Inflation, Mean, rows};
 use crate::analysis::unseen;
 use crate::engine::joint::JointFit;
@@ -88,7 +89,7 @@ impl Linear {
 
     /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted.
     pub fn factors(&self, fitted: &JointFit) -> Option<(Misfit, Vec<Vec<f64>>)> {
-        let nodes = process::nodes(&self.all, self.degrees_of_freedom, EVIDENCE)?;
+        let nodes = nodes::nodes(&self.all, self.degrees_of_freedom, EVIDENCE)?;
         let mean = Mean::of(&nodes, self.degrees_of_freedom);
         let factors: Vec<f64> = (0..self.owners.len())
             .map(|k| self.factor(k, &mean.covariance))

@@ -6,8 +6,9 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
 
-use super::process::{Common, Node, cholesky};
+use super::nodes::Node;
 use super::rows::residuals;
+use super::sandwich::{Common, cholesky};
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Values, View};
 
@@ -69,14 +70,12 @@ impl Along<'_> {
         if !lengths.iter().all(|length| length.is_finite() && *length > 0.0) {
             return None;
         }
-        let common = Common::new(&all);
+        let processes: Vec<_> = self.nodes.iter().map(|node| (node.process, node.variance)).collect();
+        let covariances = Common::new(&all).covariances(&all, &processes)?;
         let mut mean = vec![vec![0.0; axes.len()]; axes.len()];
-        for node in self.nodes {
-            let one = common.covariance(&all, node.process, node.variance);
-            for (mean, one) in mean.iter_mut().zip(&one) {
-                mean.iter_mut()
-                    .zip(one)
-                    .for_each(|(mean, one)| *mean += node.weight * one);
+        for (node, one) in self.nodes.iter().zip(&covariances) {
+            for (mean, one) in mean.iter_mut().flatten().zip(one.iter().flatten()) {
+                *mean += node.weight * one;
             }
         }
         for i in 0..axes.len() {

@@ -2,10 +2,13 @@
 
 use brdfit_core::real::Real;
 
-use crate::analysis::chance::{above_t, density_of_t};
+use crate::analysis::chance::tail_of_t;
 
 /// What is left outside of one and of two standard deviations of a normal distribution, nearly: the two quantiles that are matched.
 const OUTSIDE: [f64; 2] = [0.317_310_507_862_914, 0.05];
+
+/// Those of the normal distribution, nearly.
+const NORMAL: [f64; 2] = [1.0, 1.96];
 
 /// A distribution of Student's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,11 +21,12 @@ pub struct Student {
 
 /// The one with the quantiles of 68 and 95 % of a mixture: each part has a weight, of which the sum is 1, a squared scale, and `degrees` degrees of freedom.
 pub fn matched(parts: &[(f64, f64)], degrees: f64) -> Student {
-    let [inner, outer] = OUTSIDE.map(|outside| quantile(parts, degrees, outside));
-    let one = |degrees: f64| OUTSIDE.map(|outside| quantile(&[(1.0, 1.0)], degrees, outside));
+    let one = |degrees: f64, near: [f64; 2]| quantiles(&[(1.0, 1.0)], degrees, near);
+    let at_many = one(degrees.max(1.0), NORMAL);
+    let [inner, outer] = quantiles(parts, degrees, at_many);
     // Of ln degrees: by how much the tails are too wide, which falls.
     let too_wide = |ln: f64| {
-        let [one_inner, one_outer] = one(Real::portable_exp(ln));
+        let [one_inner, one_outer] = one(Real::portable_exp(ln), at_many);
         one_outer / one_inner - outer / inner
     };
     let (few, many) = (0.0, Real::portable_ln(degrees.max(1.0)));
@@ -31,7 +35,7 @@ pub fn matched(parts: &[(f64, f64)], degrees: f64) -> Student {
         (at_few, _) if !(at_few > 0.0) => 1.0,
         (at_few, at_many) => Real::portable_exp(root(too_wide, (few, at_few), (many, at_many))),
     };
-    let scale = outer / one(degrees)[1];
+    let scale = outer / one(degrees, at_many)[1];
     Student {
         variance: scale * scale,
         degrees,
@@ -66,26 +70,41 @@ fn root(f: impl Fn(f64) -> f64, mut above: (f64, f64), mut below: (f64, f64)) ->
     0.5 * (above.0 + below.0)
 }
 
-/// Where so much of the mixture is outside, on both sides: Newton's steps, and halves where they leave what is known of it.
-fn quantile(parts: &[(f64, f64)], degrees: f64, outside: f64) -> f64 {
-    const ROUNDS: usize = 100;
-    const CLOSE: f64 = 1e-13;
-    let density = density_of_t(degrees);
-    let beyond = |x: f64| -> (f64, f64) {
-        let (mut more, mut slope) = (-outside, 0.0);
-        for &(weight, variance) in parts {
-            let scale = Real::sqrt(variance);
-            more += 2.0 * weight * above_t(x / scale, degrees);
-            slope -= 2.0 * weight * density(x / scale) / scale;
+/// Where so much of the mixture is outside, on both sides, as [`OUTSIDE`] has it, from values nearby.
+fn quantiles(parts: &[(f64, f64)], degrees: f64, near: [f64; 2]) -> [f64; 2] {
+    let tail = tail_of_t(degrees);
+    // Each part by its weight and the reciprocal of its scale.
+    let parts: Vec<(f64, f64)> = parts
+        .iter()
+        .map(|&(weight, variance)| (weight, 1.0 / Real::sqrt(variance)))
+        .collect();
+    let outside = |x: f64| {
+        let mut all = [0.0; 3];
+        for &(weight, per_scale) in &parts {
+            let t = x * per_scale;
+            let (above, density) = tail(t);
+            let slope = 2.0 * weight * density * per_scale;
+            all[0] += 2.0 * weight * above;
+            all[1] -= slope;
+            all[2] += slope * (degrees + 1.0) * t / (degrees + t * t) * per_scale;
         }
-        (more, slope)
+        all
     };
-    let (mut low, mut high, mut x) = (0.0, f64::INFINITY, 1.0);
+    std::array::from_fn(|k| falls_to(outside, OUTSIDE[k], near[k]))
+}
+
+/// Where a function that falls, given with its first and second derivative, is `level`: Halley's steps (1694), and halves where they leave what is known of it.
+fn falls_to(f: impl Fn(f64) -> [f64; 3], level: f64, near: f64) -> f64 {
+    const ROUNDS: usize = 100;
+    // The error of a step is of its third power.
+    const CLOSE: f64 = 3e-6;
+    let (mut low, mut high, mut x) = (0.0, f64::INFINITY, near);
     for _ in 0..ROUNDS {
-        let (more, slope) = beyond(x);
+        let [value, slope, bend] = f(x);
+        let more = value - level;
         *(if more > 0.0 { &mut low } else { &mut high }) = x;
-        let step = x - more / slope;
-        let next = if low < step && step < high {
+        let step = x - 2.0 * more * slope / (2.0 * slope * slope - more * bend);
+        let next = if low <= step && step <= high {
             step
         } else {
             (0.5 * (low + high)).min(2.0 * x)

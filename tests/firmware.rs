@@ -75,7 +75,7 @@ fn packages(lock: &str) -> Vec<(&str, &str)> {
 fn host_and_firmware_use_the_same_versions() {
     let host = packages(include_str!("../Cargo.lock"));
     let firmware = packages(include_str!("firmware/Cargo.lock"));
-    for name in ["libm", "heapless"] {
+    for name in ["libm", "rand_xoshiro"] {
         let of = |list: &[(&str, &str)]| {
             list.iter()
                 .find(|package| package.0 == name)

@@ -6,10 +6,13 @@ use brdfit::engine::blocks;
 use brdfit_core::brdf::ALL;
 use brdfit_core::geometry::{Block, LANES};
 use brdfit_core::lm::{Bounds, Fit, Linearization, Options, Problem};
+use brdfit_core::minima::Minimum;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::saved::{self, SavedError};
-use brdfit_core::search::{CANDIDATES, Candidate, FITS, Phase, Region, Scene, Search, search, search_from};
+use brdfit_core::search::{
+    CANDIDATES, Candidate, FITS, Phase, Region, Scene, Search, SearchIn, Trial, search, search_from,
+};
 use brdfit_suite::random_scenes::{KINDS, scene};
 use brdfit_suite::tolerance::{self, check};
 
@@ -229,6 +232,55 @@ fn a_fit_and_a_scan_are_saved_and_go_on() {
         (fit.x, fit.at, fit.passes, fit.stop),
         (later.x, later.at, later.passes, later.stop)
     );
+}
+
+#[test]
+fn memory_of_a_length_known_at_run_time_changes_nothing() {
+    let (bounds, options) = (bounds::<f64>(), Options::default());
+    for k in 0..4 {
+        let blocks = blocks::<f64>(&scene(k)).unwrap();
+        let scan = Scan::<f64, ALL, P>::new(&blocks);
+        let mut whole = Search::<f64, P, 2>::new();
+        whole.begin(&bounds, k, CANDIDATES, &options);
+        while whole.step(&scan) {}
+        // Memory of two searches.
+        let mut places = [0, 1].map(|_| (vec![Minimum::EMPTY; 2], vec![Trial::EMPTY; FITS]));
+        let [(minima, fits), (other_minima, other_fits)] = &mut places;
+        let mut search = SearchIn::over(minima.as_mut_slice(), fits.as_mut_slice());
+        search.begin(&bounds, k, CANDIDATES, &options);
+        for _ in 0..150 {
+            search.step(&scan);
+        }
+        // What it is at that moment can go on in arrays too.
+        let mut bytes = vec![0; saved::length(&mut search)];
+        saved::save(&mut search, &mut bytes).unwrap();
+        let mut arrays = Search::<f64, P, 2>::new();
+        saved::restore(&mut arrays, &bytes).unwrap();
+        let mut slices = SearchIn::over(other_minima.as_mut_slice(), other_fits.as_mut_slice());
+        saved::restore(&mut slices, &bytes).unwrap();
+        while search.step(&scan) {}
+        while arrays.step(&scan) {}
+        while slices.step(&scan) {}
+        let end = |best: &Fit<f64, P>| (best.x, best.at, best.passes);
+        let expected = end(whole.best().unwrap());
+        assert_eq!(end(search.best().unwrap()), expected);
+        assert_eq!(end(arrays.best().unwrap()), expected);
+        assert_eq!(end(slices.best().unwrap()), expected);
+        let list = |minima: &[Minimum<f64, P>]| {
+            let all = minima.iter().map(|one| (one.x, one.cost, one.hits, one.first_start));
+            all.collect::<Vec<_>>()
+        };
+        let expected = list(whole.minima().as_slice());
+        assert_eq!(list(search.minima().as_slice()), expected);
+        assert_eq!(list(slices.minima().as_slice()), expected);
+        assert_eq!(search.minima().capacity(), 2);
+    }
+    // Room for no fit: it ends, without a best.
+    let blocks = blocks::<f64>(&scene(0)).unwrap();
+    let mut search = SearchIn::over([Minimum::EMPTY; 1], [Trial::EMPTY; 0]);
+    search.begin(&bounds, 0, 30, &options);
+    while search.step(&Scan::<f64, ALL, P>::new(&blocks)) {}
+    assert!(search.best().is_none());
 }
 
 #[test]

@@ -9,12 +9,13 @@
 
 #define SAMPLES 57
 #define MINIMA 4
+#define FITS 4
 
 /* The compiler gives this memory; the library has none. */
 static brdfit_block_f32 blocks[BRDFIT_BLOCKS(SAMPLES)];
 static brdfit_fit_f32 fit;
-static brdfit_search_state_f32 state;
-static uint8_t flash[BRDFIT_SAVED_SIZE];
+static brdfit_search_state_f32 state[BRDFIT_SEARCH(MINIMA, FITS)];
+static uint8_t flash[sizeof state];
 
 static void print_number(const char *name, float value) {
     uint32_t words[sizeof value / 4];
@@ -117,18 +118,18 @@ static brdfit_error in_steps(const brdfit_scan_f32 *scan, const brdfit_options_f
     brdfit_uncertainty_f32 known;
     size_t length = 0;
     uint32_t ended = 0, steps = 0;
-    brdfit_error error = brdfit_search_begin_f32(&state, options);
+    brdfit_error error = brdfit_search_begin_f32(state, sizeof state, MINIMA, FITS, options);
     while (!error && !ended) {
-        error = brdfit_search_step_f32(&state, scan, 1, &ended);
+        error = brdfit_search_step_f32(state, scan, 1, &ended);
         if (++steps == 100 && !error) {
-            error = brdfit_search_save_f32(&state, flash, sizeof flash, &length);
-            memset(&state, 0, sizeof state);
+            error = brdfit_search_save_f32(state, flash, sizeof flash, &length);
+            memset(state, 0, sizeof state);
             if (!error)
-                error = brdfit_search_restore_f32(&state, options, flash, length);
+                error = brdfit_search_restore_f32(state, sizeof state, MINIMA, FITS, options, flash, length);
         }
     }
     if (!error)
-        error = brdfit_search_found_f32(&state, NULL, 0, &found);
+        error = brdfit_search_found_f32(state, NULL, 0, &found);
     if (!error)
         error = brdfit_uncertainty_at_f32(scan, options, &found.best.params, &known);
     if (error)
@@ -165,6 +166,7 @@ static void mistakes(brdfit_scan_f32 *scan) {
     brdfit_options_init_f32(&options);
     options.terms = BRDFIT_VOLUME;
     expect_error("volume alone", brdfit_search_f32(scan, &options, NULL, 0, &found));
+    expect_error("a minimum too many", brdfit_search_begin_f32(state, sizeof state, MINIMA + 1, FITS, NULL));
 }
 
 int main(void) {

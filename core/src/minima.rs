@@ -1,10 +1,14 @@
 //! The table of distinct minima, best first (section 5 of the paper).
 
-use heapless::{Vec, VecView};
+use core::marker::PhantomData;
 
+use crate::list::{List, Memory};
 use crate::lm::Fit;
 use crate::real::Real;
 use crate::saved::Tape;
+
+/// How many minima a table has room for if nothing else is asked for.
+pub const MINIMA: usize = 32;
 
 /// One distinct minimum.
 ///
@@ -22,17 +26,18 @@ pub struct Minimum<R, const P: usize> {
     pub first_start: u64,
 }
 
-/// At most `M` distinct minima, in order of cost; where there are more, the worst are left out.
+/// As many distinct minima as its memory holds, in order of cost; where there are more, the worst are left out.
 ///
 /// Two fits are distinct if their costs differ by at least 1 % and a parameter differs by more than 1e-3 of itself.
 #[derive(Clone, Debug)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Minima<R, const P: usize, const M: usize> {
-    list: Vec<Minimum<R, P>, M>,
+pub struct Minima<R, const P: usize, S = [Minimum<R, P>; MINIMA]> {
+    list: List<S>,
+    of: PhantomData<R>,
 }
 
 impl<R: Real, const P: usize> Minimum<R, P> {
-    pub(crate) const EMPTY: Self = Minimum {
+    /// None: what the memory of a table holds at first.
+    pub const EMPTY: Self = Minimum {
         x: [R::ZERO; P],
         cost: R::ZERO,
         hits: 0,
@@ -47,20 +52,32 @@ impl<R: Real, const P: usize> Minimum<R, P> {
     }
 }
 
-impl<R: Real, const P: usize, const M: usize> Default for Minima<R, P, M> {
+impl<R: Real, const P: usize, const M: usize> Default for Minima<R, P, [Minimum<R, P>; M]> {
     fn default() -> Self {
-        Self::new()
+        Self::over([Minimum::EMPTY; M])
     }
 }
 
-impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
+impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Minima<R, P, S> {
     /// An empty table.
-    pub const fn new() -> Self {
-        Minima { list: Vec::new() }
+    pub const fn over(memory: S) -> Self {
+        Minima {
+            list: List::new(memory),
+            of: PhantomData,
+        }
     }
 
     pub(crate) fn fields(&mut self, tape: &mut Tape<'_>) {
-        tape.list(&mut self.list, &Minimum::EMPTY, |tape, minimum| minimum.fields(tape));
+        tape.list(&mut self.list, |tape, minimum| minimum.fields(tape));
+    }
+
+    /// How many it can hold.
+    pub fn capacity(&self) -> usize {
+        self.list.capacity()
+    }
+
+    pub(crate) fn moved(&mut self, memory: S) {
+        self.list.moved(memory);
     }
 
     /// Forgets all.
@@ -102,7 +119,7 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
             if old.cost <= new.cost {
                 (new.x, new.cost) = (old.x, old.cost);
             }
-            self.list.truncate(self.list.len() - 1);
+            self.list.shorten();
         }
         insert(&mut self.list, &new);
     }
@@ -113,6 +130,13 @@ impl<R: Real, const P: usize, const M: usize> Minima<R, P, M> {
             (Some(low), Some(high)) if high.cost > R::ZERO => (high.cost - low.cost) / high.cost,
             _ => R::ZERO,
         }
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<R: Real + defmt::Format, const P: usize, S: Memory<Item = Minimum<R, P>>> defmt::Format for Minima<R, P, S> {
+    fn format(&self, to: defmt::Formatter<'_>) {
+        defmt::write!(to, "{=[?]}", self.as_slice());
     }
 }
 
@@ -145,17 +169,24 @@ pub(crate) fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place:
 }
 
 /// Puts `new` into its place in a list in order of cost; where there is no room, the last is left out.
+pub(crate) fn insert<R: Real, const P: usize>(list: &mut List<impl Memory<Item = Minimum<R, P>>>, new: &Minimum<R, P>) {
+    let (memory, len) = list.parts();
+    insert_into(memory, len, new);
+}
+
+/// The same of a list's memory, of which the first `len` are the list.
 #[cfg_attr(target_os = "none", inline(never))]
-pub(crate) fn insert<R: Real, const P: usize>(list: &mut VecView<Minimum<R, P>>, new: &Minimum<R, P>) {
-    if list.is_full() {
-        match list.last() {
-            Some(last) if less(new.cost, last.cost) => list.truncate(list.len() - 1),
-            _ => return,
-        }
+fn insert_into<R: Real, const P: usize>(memory: &mut [Minimum<R, P>], len: &mut usize, new: &Minimum<R, P>) {
+    let longer = memory.len().min(*len + 1);
+    let has_room = longer > *len;
+    let list = memory.get_mut(..longer).unwrap_or_default();
+    if let Some(last) = list.last_mut()
+        && (has_room || less(new.cost, last.cost))
+    {
+        *last = *new;
+        *len = longer;
+        sift(list);
     }
-    // There is room.
-    let _ = list.push(*new);
-    sift(list);
 }
 
 /// Moves the last item of a list that is otherwise in order of cost to its place, after its equals.

@@ -31,9 +31,8 @@
 //! # Ok::<(), saved::SavedError>(())
 //! ```
 
-use heapless::Vec;
-
 use crate::geometry::Block;
+use crate::list::{List, Memory};
 use crate::real::Real;
 
 /// Bytes before the fields.
@@ -143,19 +142,14 @@ impl Tape<'_> {
         self.one_of(value, &[false, true]);
     }
 
-    /// A list, of which each item is written or read by a function; new ones are made from `empty`.
-    pub fn list<T: Clone, const N: usize>(
-        &mut self,
-        list: &mut Vec<T, N>,
-        empty: &T,
-        mut item: impl FnMut(&mut Self, &mut T),
-    ) {
+    /// A list, of which each item is written or read, whole, by a function.
+    pub(crate) fn list<S: Memory>(&mut self, list: &mut List<S>, mut item: impl FnMut(&mut Self, &mut S::Item)) {
         let mut count = list.len() as u32;
         self.u32(&mut count);
-        if list.resize(count as usize, empty.clone()).is_err() {
+        if !list.set_len(count as usize) {
             self.failed = true;
         }
-        for value in list {
+        for value in list.iter_mut() {
             item(self, value);
         }
     }

@@ -14,14 +14,13 @@ mod ends;
 mod steps;
 
 use crate::lm::{self, Bounds, Fit, Options, Problem};
+pub use crate::minima::MINIMA;
 use crate::minima::Minima;
 use crate::real::Real;
 use crate::start;
 
-pub use steps::{CANDIDATES, FITS, Phase, Progress, SETTLING, Search};
+pub use steps::{CANDIDATES, FITS, Phase, Progress, SETTLING, Search, SearchIn, Trial};
 
-/// Minima that [`search`] remembers.
-pub const MINIMA: usize = 32;
 /// Starts of the paper's method (section 3).
 pub const PAPER_STARTS: u32 = 250;
 /// Parts of the range of slopes that rounds look at one by one.
@@ -110,7 +109,7 @@ pub struct Found<R, const P: usize> {
     /// The fit that ended in the best of them.
     pub best: Fit<R, P>,
     /// Distinct minima, best first.
-    pub minima: Minima<R, P, MINIMA>,
+    pub minima: Minima<R, P>,
     /// What it cost.
     pub evaluations: Evaluations,
 }

@@ -34,6 +34,9 @@
 /* Number of blocks that hold so many samples. */
 #define BRDFIT_BLOCKS(samples) (((samples) + BRDFIT_BLOCK_SAMPLES - 1) / BRDFIT_BLOCK_SAMPLES)
 
+/* Number of brdfit_search_state for a search in steps that remembers so many minima and has so many fits under way. */
+#define BRDFIT_SEARCH(minima, fits) (BRDFIT_SEARCH_BASE + BRDFIT_SEARCH_MINIMUM * (minima) + BRDFIT_SEARCH_FIT * (fits))
+
 
 /**
  * Lambertian term rho_d / pi.
@@ -111,24 +114,19 @@
 #define BRDFIT_FIT_SIZE_F64 768
 
 /**
- * Size of a search in steps, in numbers of its type.
+ * Of a search in steps, what does not depend on its minima and fits, in units of brdfit_search_state.
  */
-#define BRDFIT_SEARCH_NUMBERS 960
+#define BRDFIT_SEARCH_BASE 196
 
 /**
- * Size of a search in steps in float, bytes.
+ * What a minimum takes of it.
  */
-#define BRDFIT_SEARCH_SIZE_F32 3840
+#define BRDFIT_SEARCH_MINIMUM 5
 
 /**
- * Size of a search in steps in double, bytes.
+ * What a fit takes of it.
  */
-#define BRDFIT_SEARCH_SIZE_F64 7680
-
-/**
- * Bytes that brdfit_search_save_f32() or _f64() writes at most.
- */
-#define BRDFIT_SAVED_SIZE 7680
+#define BRDFIT_SEARCH_FIT 31
 
 /**
  * pi: the delta_phi of samples in the plane of incidence; (float)BRDFIT_PI in single precision.
@@ -204,9 +202,13 @@ enum brdfit_error
    */
   BRDFIT_ERROR_NO_FIT = -14,
   /**
-   * Bytes are not a saved search of this version, these terms and this type of number, or were damaged.
+   * Bytes are not a saved search of this version, of these terms, minima and fits and this type of number, or were damaged.
    */
   BRDFIT_ERROR_SAVED = -15,
+  /**
+   * The memory of a search is smaller than what its minima and fits take: see BRDFIT_SEARCH.
+   */
+  BRDFIT_ERROR_SMALL = -16,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -474,13 +476,13 @@ typedef struct {
 } brdfit_geometry_f32;
 
 /**
- * A search under way; it holds no pointers, and may be copied.
+ * A unit of the memory of a search under way, which takes BRDFIT_SEARCH(minima, fits) of them, one after the other; all of them together may be copied.
  */
 typedef struct BRDFIT_ALIGNED(8) {
   /**
    * Not to be touched.
    */
-  float opaque[BRDFIT_SEARCH_NUMBERS];
+  float opaque[2];
 } brdfit_search_state_f32;
 
 /**
@@ -726,13 +728,13 @@ typedef struct {
 } brdfit_geometry_f64;
 
 /**
- * A search under way; it holds no pointers, and may be copied.
+ * A unit of the memory of a search under way, which takes BRDFIT_SEARCH(minima, fits) of them, one after the other; all of them together may be copied.
  */
 typedef struct BRDFIT_ALIGNED(8) {
   /**
    * Not to be touched.
    */
-  double opaque[BRDFIT_SEARCH_NUMBERS];
+  double opaque[2];
 } brdfit_search_state_f64;
 
 /**
@@ -894,11 +896,14 @@ brdfit_error brdfit_scan_add_at_f32(brdfit_scan_f32 *scan,
                                     float weight);
 
 /**
- * Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+ * Begins a search in steps, which remembers so many minima and has at most so many fits under way at a time, in `size` bytes of memory, as BRDFIT_SEARCH says: for example `static brdfit_search_state_f32 search[BRDFIT_SEARCH(4, 4)];` and `sizeof search, 4, 4`. No pass. Fewer minima change nothing but the table of them; with fewer than 4 fits a minimum is missed more often, and more are of no use. Null options are the usual ones; they are copied into the search.
  *
- * Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+ * Errors: NULL, MISALIGNED, LENGTH (no minimum or more than 65535, no fit or more than 255), BOUNDS, OPTIONS, SMALL, TERMS.
  */
 brdfit_error brdfit_search_begin_f32(brdfit_search_state_f32 *search,
+                                     size_t size,
+                                     uint32_t minima,
+                                     uint32_t fits,
                                      const brdfit_options_f32 *options);
 
 /**
@@ -916,7 +921,7 @@ brdfit_error brdfit_search_step_f32(brdfit_search_state_f32 *search,
  *
  * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
  */
-brdfit_error brdfit_search_found_f32(const brdfit_search_state_f32 *search,
+brdfit_error brdfit_search_found_f32(brdfit_search_state_f32 *search,
                                      brdfit_minimum_f32 *minima,
                                      size_t capacity,
                                      brdfit_found_f32 *found);
@@ -929,7 +934,7 @@ brdfit_error brdfit_search_found_f32(const brdfit_search_state_f32 *search,
 brdfit_error brdfit_search_abort_f32(brdfit_search_state_f32 *search);
 
 /**
- * Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+ * Writes the state of a search as bytes, with version and checksum, and how many they are: fewer than its memory has. LENGTH if there is no room for them; then bytes may have changed.
  *
  * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
  */
@@ -939,11 +944,14 @@ brdfit_error brdfit_search_save_f32(brdfit_search_state_f32 *search,
                                     size_t *length);
 
 /**
- * Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+ * Takes the state that was written, on this machine or another; minima, fits and options are those that the search began with. It goes on with the same bits. After an error the search is not begun.
  *
- * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+ * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SMALL, SAVED.
  */
 brdfit_error brdfit_search_restore_f32(brdfit_search_state_f32 *search,
+                                       size_t size,
+                                       uint32_t minima,
+                                       uint32_t fits,
                                        const brdfit_options_f32 *options,
                                        const uint8_t *bytes,
                                        size_t length);
@@ -1076,11 +1084,14 @@ brdfit_error brdfit_scan_add_at_f64(brdfit_scan_f64 *scan,
                                     double weight);
 
 /**
- * Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+ * Begins a search in steps, which remembers so many minima and has at most so many fits under way at a time, in `size` bytes of memory, as BRDFIT_SEARCH says: for example `static brdfit_search_state_f64 search[BRDFIT_SEARCH(4, 4)];` and `sizeof search, 4, 4`. No pass. Fewer minima change nothing but the table of them; with fewer than 4 fits a minimum is missed more often, and more are of no use. Null options are the usual ones; they are copied into the search.
  *
- * Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+ * Errors: NULL, MISALIGNED, LENGTH (no minimum or more than 65535, no fit or more than 255), BOUNDS, OPTIONS, SMALL, TERMS.
  */
 brdfit_error brdfit_search_begin_f64(brdfit_search_state_f64 *search,
+                                     size_t size,
+                                     uint32_t minima,
+                                     uint32_t fits,
                                      const brdfit_options_f64 *options);
 
 /**
@@ -1098,7 +1109,7 @@ brdfit_error brdfit_search_step_f64(brdfit_search_state_f64 *search,
  *
  * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
  */
-brdfit_error brdfit_search_found_f64(const brdfit_search_state_f64 *search,
+brdfit_error brdfit_search_found_f64(brdfit_search_state_f64 *search,
                                      brdfit_minimum_f64 *minima,
                                      size_t capacity,
                                      brdfit_found_f64 *found);
@@ -1111,7 +1122,7 @@ brdfit_error brdfit_search_found_f64(const brdfit_search_state_f64 *search,
 brdfit_error brdfit_search_abort_f64(brdfit_search_state_f64 *search);
 
 /**
- * Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+ * Writes the state of a search as bytes, with version and checksum, and how many they are: fewer than its memory has. LENGTH if there is no room for them; then bytes may have changed.
  *
  * Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
  */
@@ -1121,11 +1132,14 @@ brdfit_error brdfit_search_save_f64(brdfit_search_state_f64 *search,
                                     size_t *length);
 
 /**
- * Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+ * Takes the state that was written, on this machine or another; minima, fits and options are those that the search began with. It goes on with the same bits. After an error the search is not begun.
  *
- * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+ * Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SMALL, SAVED.
  */
 brdfit_error brdfit_search_restore_f64(brdfit_search_state_f64 *search,
+                                       size_t size,
+                                       uint32_t minima,
+                                       uint32_t fits,
                                        const brdfit_options_f64 *options,
                                        const uint8_t *bytes,
                                        size_t length);
@@ -1159,8 +1173,7 @@ BRDFIT_ASSERT(sizeof(brdfit_block_f32) == BRDFIT_BLOCK_SIZE_F32);
 BRDFIT_ASSERT(sizeof(brdfit_block_f64) == BRDFIT_BLOCK_SIZE_F64);
 BRDFIT_ASSERT(sizeof(brdfit_fit_f32) == BRDFIT_FIT_SIZE_F32);
 BRDFIT_ASSERT(sizeof(brdfit_fit_f64) == BRDFIT_FIT_SIZE_F64);
-BRDFIT_ASSERT(sizeof(brdfit_search_state_f32) == BRDFIT_SEARCH_SIZE_F32);
-BRDFIT_ASSERT(sizeof(brdfit_search_state_f64) == BRDFIT_SEARCH_SIZE_F64);
+BRDFIT_ASSERT(sizeof(brdfit_search_state_f32) == 8 && sizeof(brdfit_search_state_f64) == 16);
 BRDFIT_ASSERT(sizeof(brdfit_geometry_f32) == 24 && sizeof(brdfit_geometry_f64) == 48);
 BRDFIT_ASSERT(sizeof(brdfit_uncertainty_f32) == 176 && sizeof(brdfit_uncertainty_f64) == 352);
 BRDFIT_ASSERT(sizeof(brdfit_sample_f32) == 20 && sizeof(brdfit_sample_f64) == 40);

@@ -37,6 +37,7 @@ pub extern "C" fn brdfit_error_text(error: i32) -> *const c_char {
         -13 => c"scan, fit or search was not begun",
         -14 => c"no start gives a finite model",
         -15 => c"not a saved search of this kind, or damaged",
+        -16 => c"the memory of a search is too small",
         _ => c"unknown error",
     };
     text.as_ptr()

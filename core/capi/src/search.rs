@@ -4,68 +4,158 @@ use core::mem::MaybeUninit;
 
 use brdfit_core::brdf::{ALL, has, parameters, slot};
 use brdfit_core::geometry::Block;
+use brdfit_core::list::Memory;
 use brdfit_core::lm::Problem;
 use brdfit_core::lobes::Distribution;
+use brdfit_core::minima::Minimum;
 use brdfit_core::real::Real;
 use brdfit_core::residuals::Scan;
 use brdfit_core::saved::{self, SavedError};
-use brdfit_core::search::{Evaluations, Search};
+use brdfit_core::search::{Evaluations, SearchIn, Trial};
 use brdfit_core::uncertainty::Uncertainty;
 
 use crate::Done;
 use crate::fit::{Of, enough, minima_of, with_model, write_found};
-use crate::memory::{changed, input, inputs, output, outputs};
+use crate::memory::{input, inputs, output, outputs};
 use crate::options::{bounds, lm_options, options_at};
 use crate::scan::blocks_of;
 use crate::types::*;
 
-/// What lies in a [`brdfit_search_state`].
-#[repr(C)]
+/// Items in memory of the caller, whose place is told anew in each call, for it may be copied in between.
+pub struct Behind<T> {
+    first: *mut T,
+    count: usize,
+}
+
+impl<T: Copy> Memory for Behind<T> {
+    type Item = T;
+    fn items(&self) -> &[T] {
+        // SAFETY: `search_of` and `begin_of` alone make them, and they give what they give for the time of their caller's call.
+        unsafe { core::slice::from_raw_parts(self.first, self.count) }
+    }
+    fn items_mut(&mut self) -> &mut [T] {
+        // SAFETY: as above; a search has each of its two once.
+        unsafe { core::slice::from_raw_parts_mut(self.first, self.count) }
+    }
+}
+
+/// A search whose minima and fits lie behind its [`State`].
+type Search<R, const P: usize> = SearchIn<R, P, Behind<Minimum<R, P>>, Behind<Trial<R, P>>>;
+
+/// What lies at the beginning of the memory of a search; its minima follow, and then its fits.
+#[repr(C, align(8))]
 pub struct State<R> {
     /// [`begun`], if it was.
     begun: u32,
+    minima: u32,
+    fits: u32,
     options: brdfit_options<R>,
     /// A `Search<R, P>` for the P of the terms.
     search: MaybeUninit<Search<R, { parameters(ALL) }>>,
 }
+
+/// The largest numbers of minima and of fits: those that a saved search can tell.
+const MOST: (u32, u32) = (0xffff, 0xff);
 
 /// Tells memory that holds a search from memory that holds anything.
 fn begun<R>() -> u32 {
     0xb2df_1800 | size_of::<R>() as u32
 }
 
-impl<R> State<R> {
-    /// The place of the search.
-    fn search<const P: usize>(&self) -> *const Search<R, P> {
-        const { assert!(size_of::<Search<R, P>>() <= size_of::<Search<R, { parameters(ALL) }>>()) };
-        self.search.as_ptr().cast()
+/// Units of `brdfit_search_state` that a search takes, if it can have so many minima and fits.
+fn units(minima: u32, fits: u32) -> Result<usize, brdfit_error> {
+    if !(1..=MOST.0).contains(&minima) || !(1..=MOST.1).contains(&fits) {
+        return Err(brdfit_error::Length);
     }
+    Ok(BRDFIT_SEARCH_BASE + BRDFIT_SEARCH_MINIMUM * minima as usize + BRDFIT_SEARCH_FIT * fits as usize)
+}
 
-    /// The same, to be changed.
-    fn search_mut<const P: usize>(&mut self) -> *mut Search<R, P> {
-        const { assert!(size_of::<Search<R, P>>() <= size_of::<Search<R, { parameters(ALL) }>>()) };
-        self.search.as_mut_ptr().cast()
+/// Where the minima and the fits of a search lie.
+///
+/// # Safety
+/// `state` points to the memory of a search with so many.
+unsafe fn behind<R: Real, const P: usize>(
+    state: *mut State<R>,
+    minima: u32,
+    fits: u32,
+) -> (Behind<Minimum<R, P>>, Behind<Trial<R, P>>) {
+    const {
+        assert!(align_of::<Minimum<R, P>>() <= align_of::<State<R>>());
+        assert!(size_of::<Minimum<R, P>>().is_multiple_of(align_of::<Trial<R, P>>()));
+        assert!(size_of::<Minimum<R, P>>() <= BRDFIT_SEARCH_MINIMUM * size_of::<brdfit_search_state<R>>());
+        assert!(size_of::<Trial<R, P>>() <= BRDFIT_SEARCH_FIT * size_of::<brdfit_search_state<R>>());
+        assert!(size_of::<Search<R, P>>() <= size_of::<Search<R, { parameters(ALL) }>>());
+    }
+    let (minima, fits) = (minima as usize, fits as usize);
+    // SAFETY: all of it is within that memory, as the sizes above say.
+    let (first_minimum, first_fit) = unsafe {
+        let first = state.add(1).cast::<Minimum<R, P>>();
+        (first, first.add(minima).cast::<Trial<R, P>>())
+    };
+    (
+        Behind {
+            first: first_minimum,
+            count: minima,
+        },
+        Behind {
+            first: first_fit,
+            count: fits,
+        },
+    )
+}
+
+/// The search that was begun, in this place.
+///
+/// # Safety
+/// `state` comes from [`state_of`], its terms have `P` parameters, and nobody else uses it or what lies behind it during `'a`.
+unsafe fn search_of<'a, R: Real, const P: usize>(state: *mut State<R>) -> &'a mut Search<R, P> {
+    // SAFETY: `begin_of` wrote one of this P there.
+    unsafe {
+        let (minima, fits) = behind::<R, P>(state, (*state).minima, (*state).fits);
+        let search = &mut *(&raw mut (*state).search).cast::<Search<R, P>>();
+        search.moved(minima, fits);
+        search
     }
 }
 
 /// The place of the state of a search that was begun.
 ///
 /// # Safety
-/// As for `memory::input`.
-unsafe fn state_of<R>(search: *const brdfit_search_state<R>) -> Result<*const State<R>, brdfit_error> {
+/// As for `memory::changed`, for all the memory that the search was begun with.
+unsafe fn state_of<R>(search: *mut brdfit_search_state<R>) -> Result<*mut State<R>, brdfit_error> {
     // SAFETY: as asked of the caller; a number of 32 bits is there, whatever else.
     let first = *unsafe { input(search.cast::<u32>()) }?;
-    if first == begun::<R>() {
+    if !search.is_aligned() {
+        Err(brdfit_error::Misaligned)
+    } else if first == begun::<R>() {
         Ok(search.cast())
     } else {
         Err(brdfit_error::NotBegun)
     }
 }
 
-pub unsafe fn begin<R: Real>(search: *mut brdfit_search_state<R>, options: *const brdfit_options<R>) -> Done {
-    // SAFETY: the contract of the header; a `State` is no larger than a `brdfit_search`.
-    let (state, options) = unsafe { (output(search.cast::<State<R>>())?, options_at(options)?) };
-    with_model!(options, begin_of::<R>(state, &options))
+/// The options of a search, of which [`state_of`] gave the state.
+fn options_of<R: Real>(state: *const State<R>) -> brdfit_options<R> {
+    // SAFETY: `state_of` alone gives states, and their options are written once.
+    unsafe { (*state).options }
+}
+
+pub unsafe fn begin<R: Real>(
+    search: *mut brdfit_search_state<R>,
+    size: usize,
+    minima: u32,
+    fits: u32,
+    options: *const brdfit_options<R>,
+) -> Done {
+    // SAFETY: the contract of the header.
+    let options = unsafe { options_at(options)? };
+    let units = units(minima, fits)?;
+    // SAFETY: the contract of the header.
+    unsafe { output(search)? };
+    if size / size_of::<brdfit_search_state<R>>() < units {
+        return Err(brdfit_error::Small);
+    }
+    with_model!(options, begin_of::<R>(search.cast(), minima, fits, &options))
 }
 
 #[expect(
@@ -74,18 +164,29 @@ pub unsafe fn begin<R: Real>(search: *mut brdfit_search_state<R>, options: *cons
 )]
 #[inline(never)]
 fn begin_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
-    state: &mut MaybeUninit<State<R>>,
+    state: *mut State<R>,
+    minima: u32,
+    fits: u32,
     options: &brdfit_options<R>,
 ) -> Done {
-    let state = state.write(State {
-        begun: begun::<R>(),
-        options: *options,
-        search: MaybeUninit::uninit(),
-    });
-    let place = state.search_mut::<P>();
-    // SAFETY: there is room for it, aligned as its largest sibling is.
+    // SAFETY: `begin` alone calls it, with memory of so many minima and fits that nobody else uses.
     let search = unsafe {
-        place.write(Search::new());
+        state.write(State {
+            begun: begun::<R>(),
+            minima,
+            fits,
+            options: *options,
+            search: MaybeUninit::uninit(),
+        });
+        let (minima, fits) = behind::<R, P>(state, minima, fits);
+        for place in 0..minima.count {
+            minima.first.add(place).write(Minimum::EMPTY);
+        }
+        for place in 0..fits.count {
+            fits.first.add(place).write(Trial::EMPTY);
+        }
+        let place = (&raw mut (*state).search).cast::<Search<R, P>>();
+        place.write(SearchIn::over(minima, fits));
         &mut *place
     };
     let bounds = bounds::<R, TERMS, P>(options);
@@ -100,24 +201,24 @@ pub unsafe fn step<R: Real>(
     ended: *mut u32,
 ) -> Done {
     // SAFETY: the contract of the header.
-    let (state, (blocks, samples), ended) =
-        unsafe { (changed(state_of(search)?.cast_mut())?, blocks_of(scan)?, output(ended)?) };
-    let has_ended = with_model!(state.options, step_of::<R>(state, blocks, samples, passes))?;
+    let (state, (blocks, samples), ended) = unsafe { (state_of(search)?, blocks_of(scan)?, output(ended)?) };
+    let options = options_of(state);
+    let has_ended = with_model!(options, step_of::<R>(state, blocks, samples, passes))?;
     ended.write(u32::from(has_ended));
     Ok(())
 }
 
 #[inline(never)]
 fn step_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
-    state: &mut State<R>,
+    state: *mut State<R>,
     blocks: &[Block<R>],
     samples: usize,
     passes: u32,
 ) -> Result<bool, brdfit_error> {
     enough::<P>(samples)?;
     let scan = Of::<R, D, TERMS, P>::new(blocks);
-    // SAFETY: `begin_of` or `restore_of` wrote one of this P there, for the terms are the same.
-    let search = unsafe { &mut *state.search_mut::<P>() };
+    // SAFETY: `step` has it of `state_of`, and the terms are those that it was begun with.
+    let search = unsafe { search_of::<R, P>(state) };
     let made = |evaluations: Evaluations| evaluations.cost.wrapping_add(evaluations.linearize);
     let before = made(search.progress().evaluations);
     let mut goes_on = true;
@@ -128,16 +229,17 @@ fn step_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
 }
 
 pub unsafe fn found<R: Real>(
-    search: *const brdfit_search_state<R>,
+    search: *mut brdfit_search_state<R>,
     minima: *mut brdfit_minimum<R>,
     capacity: usize,
     found: *mut brdfit_found<R>,
 ) -> Done {
     // SAFETY: the contract of the header.
-    let (state, found) = unsafe { (input(state_of(search)?)?, output(found)?) };
+    let (state, found) = unsafe { (state_of(search)?, output(found)?) };
     // SAFETY: the contract of the header.
     let minima = unsafe { minima_of(minima, capacity) }?;
-    found.write(with_model!(state.options, found_of::<R>(state, minima))?);
+    let options = options_of(state);
+    found.write(with_model!(options, found_of::<R>(state, minima))?);
     Ok(())
 }
 
@@ -146,11 +248,11 @@ pub unsafe fn found<R: Real>(
     reason = "the macro gives the distribution to all"
 )]
 fn found_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
-    state: &State<R>,
+    state: *mut State<R>,
     minima: &mut [MaybeUninit<brdfit_minimum<R>>],
 ) -> Result<brdfit_found<R>, brdfit_error> {
     // SAFETY: as in `step_of`.
-    let search = unsafe { &*state.search::<P>() };
+    let search = unsafe { search_of::<R, P>(state) };
     let best = search.best().filter(|best| best.at.cost.is_finite());
     let best = best.ok_or(brdfit_error::NoFit)?;
     Ok(write_found::<R, TERMS, P>(
@@ -163,17 +265,18 @@ fn found_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
 
 pub unsafe fn abort<R: Real>(search: *mut brdfit_search_state<R>) -> Done {
     // SAFETY: the contract of the header.
-    let state = unsafe { changed(state_of(search)?.cast_mut()) }?;
-    with_model!(state.options, abort_of::<R>(state))
+    let state = unsafe { state_of(search) }?;
+    let options = options_of(state);
+    with_model!(options, abort_of::<R>(state))
 }
 
 #[expect(
     clippy::extra_unused_type_parameters,
     reason = "the macro gives distribution and terms to all"
 )]
-fn abort_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(state: &mut State<R>) -> Done {
+fn abort_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(state: *mut State<R>) -> Done {
     // SAFETY: as in `step_of`.
-    unsafe { &mut *state.search_mut::<P>() }.abort();
+    unsafe { search_of::<R, P>(state) }.abort();
     Ok(())
 }
 
@@ -191,13 +294,7 @@ pub unsafe fn save<R: Real>(
     length: *mut usize,
 ) -> Done {
     // SAFETY: the contract of the header.
-    let (state, bytes, length) = unsafe {
-        (
-            changed(state_of(search)?.cast_mut())?,
-            outputs(bytes, capacity)?,
-            output(length)?,
-        )
-    };
+    let (state, bytes, length) = unsafe { (state_of(search)?, outputs(bytes, capacity)?, output(length)?) };
     // Bytes that hold anything become bytes.
     let bytes = {
         for byte in bytes.iter_mut() {
@@ -206,7 +303,8 @@ pub unsafe fn save<R: Real>(
         // SAFETY: each was just written.
         unsafe { core::slice::from_raw_parts_mut(bytes.as_mut_ptr().cast::<u8>(), capacity) }
     };
-    length.write(with_model!(state.options, save_of::<R>(state, bytes))?);
+    let options = options_of(state);
+    length.write(with_model!(options, save_of::<R>(state, bytes))?);
     Ok(())
 }
 
@@ -215,38 +313,44 @@ pub unsafe fn save<R: Real>(
     reason = "the macro gives distribution and terms to all"
 )]
 fn save_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
-    state: &mut State<R>,
+    state: *mut State<R>,
     bytes: &mut [u8],
 ) -> Result<usize, brdfit_error> {
     // SAFETY: as in `step_of`.
-    saved::save(unsafe { &mut *state.search_mut::<P>() }, bytes).map_err(of_saved)
+    saved::save(unsafe { search_of::<R, P>(state) }, bytes).map_err(of_saved)
 }
 
 pub unsafe fn restore<R: Real>(
     search: *mut brdfit_search_state<R>,
+    size: usize,
+    minima: u32,
+    fits: u32,
     options: *const brdfit_options<R>,
     bytes: *const u8,
     length: usize,
 ) -> Done {
     // SAFETY: the contract of the header.
-    unsafe {
-        begin(search, options)?;
-        let (state, bytes) = (changed(search.cast::<State<R>>())?, inputs(bytes, length)?);
-        let done = with_model!(state.options, restore_of::<R>(state, bytes));
-        if done.is_err() {
-            state.begun = 0;
-        }
-        done
+    let bytes = unsafe {
+        begin(search, size, minima, fits, options)?;
+        inputs(bytes, length)
+    };
+    let state: *mut State<R> = search.cast();
+    let options = options_of(state);
+    let done = bytes.and_then(|bytes| with_model!(options, restore_of::<R>(state, bytes)));
+    if done.is_err() {
+        // SAFETY: it was begun just now.
+        unsafe { (*state).begun = 0 };
     }
+    done
 }
 
 #[expect(
     clippy::extra_unused_type_parameters,
     reason = "the macro gives distribution and terms to all"
 )]
-fn restore_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(state: &mut State<R>, bytes: &[u8]) -> Done {
+fn restore_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(state: *mut State<R>, bytes: &[u8]) -> Done {
     // SAFETY: as in `step_of`.
-    saved::restore(unsafe { &mut *state.search_mut::<P>() }, bytes).map_err(of_saved)
+    saved::restore(unsafe { search_of::<R, P>(state) }, bytes).map_err(of_saved)
 }
 
 pub unsafe fn uncertainty<R: Real>(

@@ -176,16 +176,19 @@ pub unsafe extern "C" fn brdfit_scan_add_at_f32(
     code(unsafe { scan::scan_add_at(scan, geometry, brdf, weight) })
 }
 
-/// Begins a search in steps; no pass. Null options are the usual ones; they are copied into the search.
+/// Begins a search in steps, which remembers so many minima and has at most so many fits under way at a time, in `size` bytes of memory, as BRDFIT_SEARCH says: for example `static brdfit_search_state_f32 search[BRDFIT_SEARCH(4, 4)];` and `sizeof search, 4, 4`. No pass. Fewer minima change nothing but the table of them; with fewer than 4 fits a minimum is missed more often, and more are of no use. Null options are the usual ones; they are copied into the search.
 ///
-/// Errors: NULL, MISALIGNED, BOUNDS, TERMS, OPTIONS.
+/// Errors: NULL, MISALIGNED, LENGTH (no minimum or more than 65535, no fit or more than 255), BOUNDS, OPTIONS, SMALL, TERMS.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn brdfit_search_begin_f32(
     search: *mut brdfit_search_state<f32>,
+    size: usize,
+    minima: u32,
+    fits: u32,
     options: *const brdfit_options<f32>,
 ) -> brdfit_error {
     // SAFETY: see the top.
-    code(unsafe { search::begin(search, options) })
+    code(unsafe { search::begin(search, size, minima, fits, options) })
 }
 
 /// Goes on with a search for at most `passes` passes over the scan, always the same one; sets `ended` to 1 if the search has ended, and else to 0. With all its steps it ends in the bits of brdfit_search_f32(). Nothing happens to a search that has ended.
@@ -207,7 +210,7 @@ pub unsafe extern "C" fn brdfit_search_step_f32(
 /// Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN, NO_FIT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn brdfit_search_found_f32(
-    search: *const brdfit_search_state<f32>,
+    search: *mut brdfit_search_state<f32>,
     minima: *mut brdfit_minimum<f32>,
     capacity: usize,
     found: *mut brdfit_found<f32>,
@@ -225,7 +228,7 @@ pub unsafe extern "C" fn brdfit_search_abort_f32(search: *mut brdfit_search_stat
     code(unsafe { search::abort(search) })
 }
 
-/// Writes the state of a search as bytes, with version and checksum, and how many they are: at most BRDFIT_SAVED_SIZE. LENGTH if there is no room for them; then bytes may have changed.
+/// Writes the state of a search as bytes, with version and checksum, and how many they are: fewer than its memory has. LENGTH if there is no room for them; then bytes may have changed.
 ///
 /// Errors: NULL, MISALIGNED, LENGTH, NOT_BEGUN.
 #[unsafe(no_mangle)]
@@ -239,18 +242,21 @@ pub unsafe extern "C" fn brdfit_search_save_f32(
     code(unsafe { search::save(search, bytes, capacity, length) })
 }
 
-/// Takes the state that was written, on this machine or another; `options` are those that the search began with. It goes on with the same bits. After an error the search is not begun.
+/// Takes the state that was written, on this machine or another; minima, fits and options are those that the search began with. It goes on with the same bits. After an error the search is not begun.
 ///
-/// Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SAVED.
+/// Errors: NULL, MISALIGNED, LENGTH, BOUNDS, TERMS, OPTIONS, SMALL, SAVED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn brdfit_search_restore_f32(
     search: *mut brdfit_search_state<f32>,
+    size: usize,
+    minima: u32,
+    fits: u32,
     options: *const brdfit_options<f32>,
     bytes: *const u8,
     length: usize,
 ) -> brdfit_error {
     // SAFETY: see the top.
-    code(unsafe { search::restore(search, options, bytes, length) })
+    code(unsafe { search::restore(search, size, minima, fits, options, bytes, length) })
 }
 
 /// What a scan tells of parameters at their optimum `params`, with the options of the search or fit; null options are the usual ones. One pass.

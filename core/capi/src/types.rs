@@ -3,6 +3,8 @@
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, Params, SURFACE, VOLUME};
 use brdfit_core::geometry::{Block, LANES};
 use brdfit_core::lm::Stop;
+use brdfit_core::minima::Minimum;
+use brdfit_core::search::Trial;
 
 use crate::fit::State;
 use crate::search;
@@ -39,14 +41,12 @@ pub const BRDFIT_FIT_NUMBERS: usize = 96;
 pub const BRDFIT_FIT_SIZE_F32: usize = 384;
 /// Size of a fit in double, bytes.
 pub const BRDFIT_FIT_SIZE_F64: usize = 768;
-/// Size of a search in steps, in numbers of its type.
-pub const BRDFIT_SEARCH_NUMBERS: usize = 960;
-/// Size of a search in steps in float, bytes.
-pub const BRDFIT_SEARCH_SIZE_F32: usize = 3840;
-/// Size of a search in steps in double, bytes.
-pub const BRDFIT_SEARCH_SIZE_F64: usize = 7680;
-/// Bytes that brdfit_search_save_f32() or _f64() writes at most.
-pub const BRDFIT_SAVED_SIZE: usize = 7680;
+/// Of a search in steps, what does not depend on its minima and fits, in units of brdfit_search_state.
+pub const BRDFIT_SEARCH_BASE: usize = 196;
+/// What a minimum takes of it.
+pub const BRDFIT_SEARCH_MINIMUM: usize = 5;
+/// What a fit takes of it.
+pub const BRDFIT_SEARCH_FIT: usize = 31;
 
 const _: () = assert!(BRDFIT_DIFFUSE == DIFFUSE as u32 && BRDFIT_SURFACE == SURFACE as u32);
 const _: () = assert!(BRDFIT_VOLUME == VOLUME as u32 && BRDFIT_ABSORBING == ABSORBING as u32);
@@ -70,10 +70,13 @@ const _: () = assert!(align_of::<Block<f64>>() <= BRDFIT_BLOCK_ALIGNMENT);
 const _: () = assert!(size_of::<State<f32>>() <= BRDFIT_FIT_SIZE_F32);
 const _: () = assert!(size_of::<State<f64>>() <= BRDFIT_FIT_SIZE_F64);
 const _: () = assert!(align_of::<State<f64>>() <= align_of::<brdfit_fit<f64>>());
-const _: () = assert!(size_of::<brdfit_search_state<f32>>() == BRDFIT_SEARCH_SIZE_F32);
-const _: () = assert!(size_of::<brdfit_search_state<f64>>() == BRDFIT_SEARCH_SIZE_F64);
-const _: () = assert!(size_of::<search::State<f32>>() <= BRDFIT_SEARCH_SIZE_F32);
-const _: () = assert!(size_of::<search::State<f64>>() <= BRDFIT_SEARCH_SIZE_F64);
+const _: () = assert!(size_of::<brdfit_search_state<f32>>() == 8 && size_of::<brdfit_search_state<f64>>() == 16);
+const _: () = assert!(size_of::<search::State<f32>>() <= 8 * BRDFIT_SEARCH_BASE);
+const _: () = assert!(size_of::<search::State<f64>>() <= 16 * BRDFIT_SEARCH_BASE);
+const _: () = assert!(size_of::<Minimum<f32, 6>>() <= 8 * BRDFIT_SEARCH_MINIMUM);
+const _: () = assert!(size_of::<Minimum<f64, 6>>() <= 16 * BRDFIT_SEARCH_MINIMUM);
+const _: () = assert!(size_of::<Trial<f32, 6>>() <= 8 * BRDFIT_SEARCH_FIT);
+const _: () = assert!(size_of::<Trial<f64, 6>>() <= 16 * BRDFIT_SEARCH_FIT);
 const _: () = assert!(align_of::<search::State<f64>>() <= align_of::<brdfit_search_state<f64>>());
 const _: () = assert!(size_of::<brdfit_geometry<f32>>() == 24 && size_of::<brdfit_geometry<f64>>() == 48);
 const _: () = assert!(size_of::<brdfit_uncertainty<f32>>() == 176 && size_of::<brdfit_uncertainty<f64>>() == 352);
@@ -112,8 +115,10 @@ pub enum brdfit_error {
     NotBegun = -13,
     /// No start gives a finite model, or no fit has begun yet.
     NoFit = -14,
-    /// Bytes are not a saved search of this version, these terms and this type of number, or were damaged.
+    /// Bytes are not a saved search of this version, of these terms, minima and fits and this type of number, or were damaged.
     Saved = -15,
+    /// The memory of a search is smaller than what its minima and fits take: see BRDFIT_SEARCH.
+    Small = -16,
 }
 
 /// How a fit ended; brdfit_stop_text() says it in words.
@@ -298,12 +303,12 @@ pub struct brdfit_found<R> {
     pub linearize_passes: u32,
 }
 
-/// A search under way; it holds no pointers, and may be copied.
+/// A unit of the memory of a search under way, which takes BRDFIT_SEARCH(minima, fits) of them, one after the other; all of them together may be copied.
 #[repr(C, align(8))]
 #[derive(Clone, Copy, Debug)]
 pub struct brdfit_search_state<R> {
     /// Not to be touched.
-    pub opaque: [R; BRDFIT_SEARCH_NUMBERS],
+    pub opaque: [R; 2],
 }
 
 /// What the model needs to know of a pair of directions, first for the surface lobe, then for the volume lobe; dimensionless.

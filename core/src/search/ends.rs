@@ -1,8 +1,7 @@
 //! What a search has found so far, and what that says of what is to be done.
 
-use heapless::Vec;
-
 use super::Scene;
+use crate::list::{List, Memory};
 use crate::lm::Fit;
 use crate::minima::{self, Minima, Minimum};
 use crate::real::Real;
@@ -34,7 +33,7 @@ const SAME: f64 = 1e-5;
 /// What a search has found.
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub(super) struct Ends<R, const P: usize, const M: usize> {
+pub(super) struct Ends<R, const P: usize, S> {
     /// The fit that ended best; of 0 passes if none has ended.
     pub best: Fit<R, P>,
     /// The largest cost of a candidate.
@@ -42,18 +41,18 @@ pub(super) struct Ends<R, const P: usize, const M: usize> {
     /// The best short fit with other slopes than the best end.
     pub rival: Option<([R; P], R)>,
     /// Where fits have ended, best first; unlike a distinct minimum, one for each cost. `hits` are the rounds in which a fit ended there, and `first_start` is the last of them.
-    pub list: Vec<Minimum<R, P>, ENDS>,
-    pub minima: Minima<R, P, M>,
+    pub list: List<[Minimum<R, P>; ENDS]>,
+    pub minima: Minima<R, P, S>,
 }
 
-impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
-    pub const fn new() -> Self {
+impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Ends<R, P, S> {
+    pub const fn over(minima: S) -> Self {
         Ends {
             best: Fit::nowhere(),
-            list: Vec::new(),
+            list: List::new([Minimum::EMPTY; ENDS]),
             poorest: R::ZERO,
             rival: None,
-            minima: Minima::new(),
+            minima: Minima::over(minima),
         }
     }
 
@@ -68,7 +67,7 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
 
     pub fn fields(&mut self, tape: &mut Tape<'_>) {
         self.best.fields(tape);
-        tape.list(&mut self.list, &Minimum::EMPTY, |tape, end| end.fields(tape));
+        tape.list(&mut self.list, |tape, end| end.fields(tape));
         tape.reals(core::slice::from_mut(&mut self.poorest));
         let mut has_rival = self.rival.is_some();
         tape.flag(&mut has_rival);
@@ -118,7 +117,7 @@ impl<R: Real, const P: usize, const M: usize> Ends<R, P, M> {
 
     /// Is an end with other slopes near the best?
     pub fn has_rival_end(&self, scene: &(impl Scene<R, P> + ?Sized)) -> bool {
-        let [best, others @ ..] = self.list.as_slice() else {
+        let [best, others @ ..] = &*self.list else {
             return false;
         };
         let mut near = others.iter().filter(|end| self.is_near(end.cost, R::of(RIVAL_END.1)));

@@ -4,10 +4,9 @@ mod plan;
 mod round;
 mod saved;
 
-use heapless::Vec;
-
 use super::ends::{EXACT, Ends};
 use super::{Candidate, Evaluations, Found, MINIMA, Scene, Waits, log};
+use crate::list::{List, Memory};
 use crate::lm::{Bounds, Fit, Options, Stop};
 use crate::minima::{self, Minima, Minimum};
 use crate::real::Real;
@@ -98,17 +97,29 @@ enum Kind {
     Slopes,
 }
 
-/// A fit of a round.
+/// A fit of a round: what the memory of a search holds of fits under way.
 #[derive(Clone, Copy, Debug)]
-struct Trial<R, const P: usize> {
+pub struct Trial<R, const P: usize> {
     fit: Fit<R, P>,
     /// The candidate that it began at.
     start: u64,
 }
 
-/// A search of the default method under way, which remembers at most `M` minima and has at most `F` fits under way at a time.
+impl<R: Real, const P: usize> Trial<R, P> {
+    /// None: what this memory holds at first.
+    pub const EMPTY: Self = Trial {
+        fit: Fit::nowhere(),
+        start: 0,
+    };
+}
+
+/// A search of the default method under way, which remembers at most `M` minima and has at most `F` fits under way at a time; its state is within it.
+pub type Search<R, const P: usize, const M: usize = MINIMA, const F: usize = FITS> =
+    SearchIn<R, P, [Minimum<R, P>; M], [Trial<R, P>; F]>;
+
+/// A search of the default method under way, which remembers as many minima as the memory `M` holds, and has as many fits under way as `F` holds: arrays ([`Search`]), or slices of lengths that are known when it runs ([`SearchIn::over`]).
 ///
-/// Its state is plain data without references: it can lie in static memory, be copied, and be saved ([`crate::saved`]).
+/// The state of a [`Search`] is plain data without references: it can lie in static memory, be copied, and be saved ([`crate::saved`]).
 /// Fewer minima change nothing but the table of them; with fewer than [`FITS`] fits, rounds follow fewer starts, and a minimum is missed more often.
 /// The same scene must be given to every step.
 ///
@@ -135,7 +146,7 @@ struct Trial<R, const P: usize> {
 #[derive(Clone, Debug)]
 // In this order: what lies first is reached by shorter instructions.
 #[repr(C)]
-pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = FITS> {
+pub struct SearchIn<R, const P: usize, M, F> {
     phase: Phase,
     task: Task,
     /// Are further rounds and variations needed to settle the scan?
@@ -170,9 +181,9 @@ pub struct Search<R, const P: usize, const M: usize = MINIMA, const F: usize = F
     centre: ([R; P], R),
     candidate: Candidate<R, P>,
     /// Candidates, best first: `cost` is first their rank, and `first_start` which it is.
-    starts: Vec<Minimum<R, P>, TRIED>,
+    starts: List<[Minimum<R, P>; TRIED]>,
     ends: Ends<R, P, M>,
-    fits: Vec<Trial<R, P>, F>,
+    fits: List<F>,
 }
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Default for Search<R, P, M, F> {
@@ -184,8 +195,30 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Default for Search
 impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
     /// Memory for a search that is not begun; all zeros.
     pub const fn new() -> Self {
-        const { assert!(F > 0, "a search needs room for a fit") };
-        Search {
+        // Made when it is compiled: then zeros are what is left to be written.
+        const {
+            assert!(F > 0, "a search needs room for a fit");
+            Self::over([Minimum::EMPTY; M], [Trial::EMPTY; F])
+        }
+    }
+}
+
+impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
+    /// A search that is not begun, over memory for its minima and for at least one fit: it has no best where there is room for none.
+    ///
+    /// ```
+    /// use brdfit_core::minima::Minimum;
+    /// use brdfit_core::search::{SearchIn, Trial};
+    ///
+    /// // As many as the caller wants today.
+    /// let (minima, fits) = (5, 2);
+    /// let mut minima = vec![Minimum::<f32, 6>::EMPTY; minima];
+    /// let mut fits = vec![Trial::<f32, 6>::EMPTY; fits];
+    /// let search = SearchIn::over(minima.as_mut_slice(), fits.as_mut_slice());
+    /// assert_eq!(search.minima().capacity(), 5);
+    /// ```
+    pub const fn over(minima: M, fits: F) -> Self {
+        SearchIn {
             phase: Phase::Known,
             task: Task::Choose,
             kind: Kind::Everywhere,
@@ -222,9 +255,9 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
                 passes: 0,
                 waits: Waits::No,
             },
-            starts: Vec::new(),
-            fits: Vec::new(),
-            ends: Ends::new(),
+            starts: List::new([Minimum::EMPTY; TRIED]),
+            fits: List::new(fits),
+            ends: Ends::over(minima),
         }
     }
 
@@ -243,6 +276,12 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         self.ends.clear();
     }
 
+    /// Goes on over memory at another place, to which what was in the old one has been copied.
+    pub fn moved(&mut self, minima: M, fits: F) {
+        self.ends.minima.moved(minima);
+        self.fits.moved(fits);
+    }
+
     /// Takes a point that is known to be good, before the first round: the next steps are a fit from it. False if the fit of another is still under way, or rounds have begun.
     pub fn offer(&mut self, x: [R; P]) -> bool {
         if (self.phase, self.task) != (Phase::Known, Task::Choose) {
@@ -251,8 +290,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         self.starts.clear();
         self.fits.clear();
         let index = u64::from(self.candidates) + u64::from(self.known);
-        // There is room.
-        let _ = self.starts.push(at(x, R::ZERO, index));
+        self.starts.push(at(x, R::ZERO, index));
         self.known += 1;
         (self.levelled, self.place, self.task) = (1, 0, Task::Begin);
         true
@@ -285,7 +323,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
     /// The best fit so far; none before the first.
     pub fn best(&self) -> Option<&Fit<R, P>> {
         let mut best = &self.ends.best;
-        for Trial { fit, .. } in &self.fits {
+        for Trial { fit, .. } in self.fits.iter() {
             if best.passes == 0 || minima::less(fit.at.cost, best.at.cost) {
                 best = fit;
             }
@@ -334,8 +372,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         let settles = best.stop.is_some_and(Stop::converged) && self.options.cost_tolerance <= R::EPSILON && !exact;
         self.until = if settles { best.passes + SETTLING } else { 0 };
         self.fits.clear();
-        // There is room.
-        let _ = self.fits.push(Trial { fit: *best, start: 0 });
+        self.fits.push(Trial { fit: *best, start: 0 });
         self.task = Task::Settle;
     }
 

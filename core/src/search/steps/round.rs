@@ -1,13 +1,14 @@
 //! A round: candidates by rank, the best of them by cost, fits from the best of those, and which of these converge.
 
-use super::{BEGUN, GROUP_BEGUN, Kind, Phase, SHORT, SLOPES_BEGUN, Search, Task, Trial, VARIATION_SHORT, at};
+use super::{BEGUN, GROUP_BEGUN, Kind, Phase, SHORT, SLOPES_BEGUN, SearchIn, Task, Trial, VARIATION_SHORT, at};
+use crate::list::Memory;
 use crate::lm::Fit;
 use crate::minima::{self, Minimum};
 use crate::real::Real;
 use crate::search::ends::{NEAR, QUIET};
 use crate::search::{Candidate, Region, Scene, Waits};
 
-impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F> {
+impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
     /// Begins one of these candidates.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn begin_round(&mut self, first: u32, end: u32, kind: Kind) {
@@ -67,7 +68,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             Kind::Slopes => SLOPES_BEGUN,
             _ => BEGUN,
         };
-        begun.min(F) as u32
+        begun.min(self.fits.capacity()) as u32
     }
 
     /// The cost of the next start, which moves to its place among those that have one; these are the first.
@@ -111,8 +112,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         if let Some(&Minimum { x, first_start, .. }) = self.starts.get(self.place as usize) {
             let fit = Fit::begin(scene, &self.bounds, x, &self.rough());
             self.evaluations.linearize += 1;
-            // There is room.
-            let _ = self.fits.push(Trial {
+            self.fits.push(Trial {
                 fit,
                 start: first_start,
             });
@@ -140,7 +140,7 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
             self.task = Task::Short;
             return;
         }
-        let mut rest = self.fits.as_mut_slice();
+        let mut rest = &mut *self.fits;
         while let [others @ .., new] = rest
             && let Some(before) = others.last_mut()
             && minima::less(new.fit.at.cost, before.fit.at.cost)

@@ -1,15 +1,18 @@
 //! The state of a search as bytes.
 
-use super::{Kind, Phase, Search, Task, Trial};
-use crate::lm::Fit;
+use super::{Kind, Phase, SearchIn, Task, Trial};
+use crate::list::Memory;
 use crate::minima::Minimum;
 use crate::real::Real;
 use crate::saved::{Saved, Tape};
 use crate::search::{BANDS, Waits};
 
-impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R, P, M, F> {
+impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> Saved
+    for SearchIn<R, P, M, F>
+{
     fn shape(&self) -> [u32; 3] {
-        let capacities = (P as u32) << 24 | (F as u32 & 0xff) << 16 | M as u32 & 0xffff;
+        let (fits, minima) = (self.fits.capacity() as u32, self.ends.minima.capacity() as u32);
+        let capacities = (P as u32) << 24 | (fits & 0xff) << 16 | minima & 0xffff;
         [4, size_of::<R>() as u32, capacities]
     }
     fn fields(&mut self, tape: &mut Tape<'_>) {
@@ -78,12 +81,8 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Saved for Search<R
         ] {
             tape.reals(core::slice::from_mut(number));
         }
-        tape.list(&mut self.starts, &Minimum::EMPTY, |tape, start| start.fields(tape));
-        let empty = Trial {
-            fit: Fit::nowhere(),
-            start: 0,
-        };
-        tape.list(&mut self.fits, &empty, |tape, trial| {
+        tape.list(&mut self.starts, |tape, start| start.fields(tape));
+        tape.list(&mut self.fits, |tape, trial| {
             trial.fit.fields(tape);
             tape.u64(&mut trial.start);
         });

@@ -11,7 +11,7 @@ pub mod check;
 pub mod columns;
 mod cut;
 mod direction;
-mod doubt;
+pub mod doubt;
 mod facts;
 mod find;
 mod finder;

@@ -10,6 +10,7 @@ use brdfit_core::search::{Candidate, Region, Scene};
 use crate::error::FitError;
 use crate::instrument::aperture::directions;
 use crate::passes::{Both, Kernel, blocks_of};
+use crate::until::Until;
 
 /// Lanes that go through a model side by side, and groups of them in a block.
 const GROUPS: usize = LANES / GROUP;
@@ -38,6 +39,8 @@ pub struct Averaged<'a, const P: usize, const C: usize> {
     point: &'a Kernel<'a, f64, P>,
     parts: Vec<Part<C>>,
     passes: Passes<P, C>,
+    /// A pass over a long scan takes seconds: it ends where nobody waits for it any more.
+    until: Until,
 }
 
 impl<'a, const P: usize, const C: usize> Averaged<'a, P, C> {
@@ -46,12 +49,13 @@ impl<'a, const P: usize, const C: usize> Averaged<'a, P, C> {
         point: &'a Kernel<'a, f64, P>,
         samples: &[Sample<f64>],
         half_angle: f64,
+        until: Until,
     ) -> Result<Self, FitError> {
         let passes = Passes {
             blocks: blocks_of::<f64, M, P, C>,
             rows: rows::<M, P, C>,
         };
-        Averaged::of(passes, point, samples, half_angle)
+        Averaged::of(passes, point, samples, half_angle, until)
     }
 
     fn of(
@@ -59,8 +63,12 @@ impl<'a, const P: usize, const C: usize> Averaged<'a, P, C> {
         point: &'a Kernel<'a, f64, P>,
         samples: &[Sample<f64>],
         half_angle: f64,
+        until: Until,
     ) -> Result<Self, FitError> {
         let part = |sample: &Sample<f64>| {
+            if until.is_over() {
+                return Err(FitError::Interrupted);
+            }
             let (directions, shares): (Vec<Sample<f64>>, Vec<f64>) = directions(sample, half_angle)
                 .into_iter()
                 .map(|(at, share)| (Sample { weight: 1.0, ..at }, share))
@@ -81,7 +89,13 @@ impl<'a, const P: usize, const C: usize> Averaged<'a, P, C> {
             point,
             parts: samples.iter().map(part).collect::<Result<_, FitError>>()?,
             passes,
+            until,
         })
+    }
+
+    /// The samples of a pass, until nobody waits for it any more.
+    fn wanted(&self) -> impl Iterator<Item = &Part<C>> {
+        self.parts.iter().take_while(|_| !self.until.is_over())
     }
 
     /// Residual of a sample, with its derivatives if `gradient`.
@@ -138,13 +152,13 @@ fn rows<M: Both<P, C>, const P: usize, const C: usize>(
 
 impl<const P: usize, const C: usize> Problem<f64, P> for Averaged<'_, P, C> {
     fn cost(&self, x: &[f64; P]) -> f64 {
-        let residuals = self.parts.iter().map(|part| self.row(x, part, false).0);
+        let residuals = self.wanted().map(|part| self.row(x, part, false).0);
         residuals.map(|residual| residual * residual).sum()
     }
 
     fn linearize(&self, x: &[f64; P]) -> Linearization<f64, P> {
         let mut sums = Linearization::zero();
-        for part in &self.parts {
+        for part in self.wanted() {
             let (residual, slopes) = self.row(x, part, true);
             sums.add(residual, &slopes);
         }

@@ -17,12 +17,13 @@ use crate::search::setup::Setup;
 use crate::search::watched::{self, Trace};
 use crate::search::{self, enough};
 use crate::simd::Simd;
+use crate::until::Until;
 use crate::values::Values;
 
 /// Makes a scan of samples, and does something with it.
 type Point<R, const P: usize> = fn(&[Sample<f64>], Simd, Then<R, P>) -> Result<(), FitError>;
-/// Makes a scan through an aperture of some half-angle from that without it, and does something with it.
-type Through<const P: usize> = fn(&Kernel<f64, P>, &[Sample<f64>], f64, Then<f64, P>) -> Result<(), FitError>;
+/// Makes a scan through an aperture of some half-angle from that without it, as long as that is wanted, and does something with it.
+type Through<const P: usize> = fn(&Kernel<f64, P>, &[Sample<f64>], (f64, Until), Then<f64, P>) -> Result<(), FitError>;
 /// What is done with a scan.
 type Then<'a, R, const P: usize> = &'a mut dyn FnMut(&Kernel<R, P>);
 
@@ -81,10 +82,10 @@ fn point<R: Real, M: Model<R, P, C> + Send + Sync, const P: usize, const C: usiz
 fn through<M: Both<P, C>, const P: usize, const C: usize>(
     point: &Kernel<f64, P>,
     samples: &[Sample<f64>],
-    half_angle: f64,
+    (half_angle, until): (f64, Until),
     then: Then<f64, P>,
 ) -> Result<(), FitError> {
-    then(&Averaged::new::<M>(point, samples, half_angle)?);
+    then(&Averaged::new::<M>(point, samples, half_angle, until)?);
     Ok(())
 }
 
@@ -114,7 +115,7 @@ impl<const P: usize> Bound<P> {
         };
         with(self.double, samples, options, |point| {
             let mut made = Err(FitError::Interrupted);
-            through(point, samples, aperture, &mut |scan| made = then(scan))?;
+            through(point, samples, (aperture, options.until), &mut |scan| made = then(scan))?;
             made
         })
     }

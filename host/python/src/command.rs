@@ -19,7 +19,8 @@ use crate::watch::apart;
 /// # Errors
 /// `brdfit.Error`, one line.
 #[pyfunction]
-pub fn command<'py>(py: Python<'py>, words: Vec<OsString>, input: Vec<u8>) -> PyResult<Bound<'py, PyBytes>> {
+pub fn command<'py>(py: Python<'py>, words: Vec<OsString>, input: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+    let input = input.to_vec();
     let ended = apart(py, move |until| {
         give_up(until);
         let mut output = Vec::new();

@@ -1,6 +1,6 @@
 //! The BRDF of a model.
 
-use brdfit::engine::{Material, Model, Values};
+use brdfit::engine::{Material, Model, Values, View};
 use brdfit::input::azimuth;
 use brdfit::number::shortest;
 use brdfit::parameters::{self, check};
@@ -15,9 +15,6 @@ use crate::options::refuse;
 use crate::rows::whole;
 use crate::watch::scoped;
 
-/// Values between two looks for Ctrl-C.
-const CHUNK: usize = 4096;
-
 /// Angles in degrees, and parameters, of shapes (samples) and (samples, parameters).
 #[derive(Clone, Copy)]
 struct Points<'a> {
@@ -25,30 +22,32 @@ struct Points<'a> {
     theta_s: ArrayView1<'a, f64>,
     delta_phi: ArrayView1<'a, f64>,
     x: ArrayView2<'a, f64>,
+    /// Half-angle of the detector and offset of theta_s, radians.
+    seen: (f64, f64),
 }
 
-/// The BRDF in sr^-1, or ln of it, at angles in degrees of shape (samples), with parameters of shape (samples, parameters); NaN where a parameter is NaN.
+/// The BRDF in sr^-1, or ln of it, at theta_i, theta_s and delta_phi in degrees, each of shape (samples), with parameters of shape (samples, parameters), through an aperture of some half-angle and with an offset of theta_s in degrees; NaN where a parameter is NaN, and where an offset leads out of the plane of incidence or beyond the horizon.
 #[pyfunction]
 pub fn brdf<'py>(
     py: Python<'py>,
     model: &str,
-    theta_i: PyReadonlyArray1<'py, f64>,
-    theta_s: PyReadonlyArray1<'py, f64>,
-    delta_phi: PyReadonlyArray1<'py, f64>,
+    angles: [PyReadonlyArray1<'py, f64>; 3],
     x: PyReadonlyArray2<'py, f64>,
     ln: bool,
+    seen: (f64, f64),
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let model = parameters::model(model).map_err(|error| refuse(&error))?;
     let points = Points {
-        theta_i: whole("theta_i", &theta_i)?,
-        theta_s: whole("theta_s", &theta_s)?,
-        delta_phi: whole("delta_phi", &delta_phi)?,
+        theta_i: whole("theta_i", &angles[0])?,
+        theta_s: whole("theta_s", &angles[1])?,
+        delta_phi: whole("delta_phi", &angles[2])?,
         x: whole("parameters", &x)?,
+        seen: (seen.0.to_radians(), seen.1.to_radians()),
     };
     let all = |until: brdfit::engine::Until| {
         let mut values = Vec::with_capacity(points.theta_i.len());
         for index in 0..points.theta_i.len() {
-            if index % CHUNK == 0 && until.is_over() {
+            if until.is_over() {
                 break;
             }
             values.push(points.value(model, index, ln)?);
@@ -82,7 +81,13 @@ impl Points<'_> {
         for (place, value) in values.iter().enumerate() {
             check(model, place, *value).map_err(|error| error.message())?;
         }
-        let ln_f = Material { model, values }.ln_f(&sample).unwrap_or(f64::NAN);
+        let (aperture, offset) = self.seen;
+        let view = View {
+            material: Material { model, values },
+            aperture,
+            offset,
+        };
+        let ln_f = view.ln_f(&sample).unwrap_or(f64::NAN);
         Ok(match ln {
             true => ln_f,
             false if ln_f < LEAST_LN => 0.0,

@@ -146,7 +146,7 @@ impl Work<'_> {
             if until.is_over() {
                 break;
             }
-            self.scans.seen(scan, self.drop_invalid)?;
+            self.scans.seen(scan, self.drop_invalid, until)?;
         }
         let mut table = Table::new(&self.models());
         let Some(first) = self.asked.first() else {
@@ -169,7 +169,7 @@ impl Work<'_> {
     }
 
     fn one(&self, scan: usize, until: Until, table: &Table) -> Result<Kept, String> {
-        let seen = self.scans.seen(scan, self.drop_invalid)?;
+        let seen = self.scans.seen(scan, self.drop_invalid, until)?;
         let wanted = self.asked(scan).until(until);
         let measurement = Measurement {
             deviations: seen.deviations,

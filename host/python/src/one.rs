@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use brdfit::analysis::deviations::settled;
-use brdfit::analysis::fit::{FittedScan, fit as fit_scan, prove};
+use brdfit::analysis::fit::{FittedScan, fit as fit_scan, prove, residuals};
 use brdfit::analysis::proof::{Goal, provable};
 use brdfit::engine::{Material, Outcome, Until};
 use brdfit::error::Error;
@@ -45,7 +45,7 @@ pub fn fit<'py>(
     words: Vec<String>,
     claim: Option<Claim>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let fitted = fitted(py, scan, &words, claim)?;
+    let (fitted, residuals) = fitted(py, scan, &words, claim)?;
     let outcome = &fitted.outcome;
     let model = outcome.model;
     let result = PyDict::new(py);
@@ -62,6 +62,10 @@ pub fn fit<'py>(
     result.set_item("samples", outcome.samples)?;
     result.set_item("status", status(outcome))?;
     result.set_item("at_bound", &outcome.at_bound)?;
+    result.set_item("residuals", residuals.into_pyarray(py))?;
+    result.set_item("aperture_half_angle", outcome.aperture.to_degrees())?;
+    let offset = outcome.offset.map_or(0.0, |offset| offset.value);
+    result.set_item("offset", offset.to_degrees())?;
     let minima = outcome.minima.iter();
     let minima: Vec<_> = minima
         .map(|it| (it.mse2, it.params.to_vec().into_pyarray(py), it.hits))
@@ -98,16 +102,27 @@ pub fn report(
     page.map_err(|error| options::refuse(&error))
 }
 
-/// The picture of `brdfit fit --plot`: a scan with its minima, of which the first is the best; none if there are none.
+/// The picture of `brdfit fit --plot`: a scan with its minima, of which the first is the best, none if there are none; its samples are where an offset of theta_s in degrees leaves them.
 #[pyfunction]
-pub fn picture(scan: &Scan, title: &str, model: &str, minima: Vec<Vec<f64>>, outliers: Vec<usize>) -> PyResult<String> {
+pub fn picture(
+    scan: &Scan,
+    title: &str,
+    model: &str,
+    minima: Vec<Vec<f64>>,
+    outliers: Vec<usize>,
+    offset: f64,
+) -> PyResult<String> {
     let model = brdfit::parameters::model(model).map_err(|error| options::refuse(&error))?;
     let curves = minima.iter().map(|values| Material {
         model,
         values: values.iter().copied().collect(),
     });
     let curves: Vec<Material> = curves.collect();
-    Ok(scan_svg(title, &Drawn::without(&scan.0, &outliers).data(), &curves))
+    Ok(scan_svg(
+        title,
+        &Drawn::without(&scan.0, &outliers).moved(offset.to_radians()).data(),
+        &curves,
+    ))
 }
 
 /// Refuses a claim on what has no proof, before anything is fitted.
@@ -129,28 +144,35 @@ fn goal<'a>((eps, boxes, seconds): Claim, interrupted: &'a (dyn Fn() -> bool + S
     }
 }
 
-fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -> PyResult<FittedScan> {
+fn fitted(py: Python<'_>, scan: &Scan, words: &[String], claim: Option<Claim>) -> PyResult<(FittedScan, Vec<f64>)> {
     let asked = provable_if(options::search(words)?, claim)?;
-    let one = |until: Until| -> Result<FittedScan, Error> {
+    let one = |until: Until| -> Result<(FittedScan, Vec<f64>), Error> {
         let wanted = asked.until(until);
         let (scan, fitted) = asked.for_one(|| {
             let scan = settled(scan.0.clone(), &wanted);
             let fitted = fit_scan(&scan, &wanted);
-            (scan, fitted)
+            let seen = fitted
+                .as_ref()
+                .map_or(Vec::new(), |fitted| residuals(&scan, &fitted.outcome));
+            (scan, fitted.map(|fitted| (fitted, seen)))
         })?;
-        let fitted = fitted?;
+        let (fitted, seen) = fitted?;
         let Some(claim) = claim else {
-            return Ok(fitted);
+            return Ok((fitted, seen));
         };
         let over = || until.is_over();
         let goal = goal(claim, &over);
-        asked.on_threads(|| prove(&scan, fitted, &goal))?
+        asked.on_threads(|| {
+            let fitted = prove(&scan, fitted, &goal)?;
+            let seen = residuals(&scan, &fitted.outcome);
+            Ok((fitted, seen))
+        })?
     };
-    let mut fitted = scoped(py, one, |_| Ok(()))?.map_err(|error| options::refuse(&error))?;
+    let (mut fitted, seen) = scoped(py, one, |_| Ok(()))?.map_err(|error| options::refuse(&error))?;
     // Two runs give the same object.
     fitted.elapsed = None;
     if let Some(proof) = &mut fitted.proof {
         proof.elapsed = None;
     }
-    Ok(fitted)
+    Ok((fitted, seen))
 }

@@ -1,8 +1,9 @@
 //! Rows of arrays as samples of scans. Degrees become radians here, in the way of the program's files.
 
-use brdfit::input::azimuth;
+use brdfit::engine::Until;
 use brdfit::input::left_out::{Counts, Reason};
 use brdfit::input::weight::{self, Deviation, Source};
+use brdfit::input::{azimuth, doubt};
 use brdfit::number::shortest;
 use brdfit_core::geometry::{Observation, Sample};
 use numpy::ndarray::{ArrayView, ArrayView2, Dimension};
@@ -20,6 +21,8 @@ pub struct Arrays<'py> {
     brdf: PyReadonlyArray2<'py, f64>,
     sigma: Option<PyReadonlyArray2<'py, f64>>,
     mask: Option<PyReadonlyArray2<'py, bool>>,
+    /// Which angles have no unit of their own: that they are degrees is the caller's word alone.
+    asked: Vec<String>,
 }
 
 /// The numbers of an array.
@@ -55,6 +58,7 @@ impl Arrays<'_> {
             brdf: whole("brdf", &self.brdf)?,
             sigma: sigma.transpose()?,
             mask: mask.transpose()?,
+            asked: ["theta_i", "theta_s", "delta_phi"].map(|name| self.asked.iter().any(|one| one == name)),
         })
     }
 }
@@ -68,6 +72,7 @@ pub struct Scans<'a> {
     brdf: ArrayView2<'a, f64>,
     sigma: Option<ArrayView2<'a, f64>>,
     mask: Option<ArrayView2<'a, bool>>,
+    asked: [bool; 3],
 }
 
 /// What is seen of a scan.
@@ -88,15 +93,19 @@ impl Scans<'_> {
         self.brdf.nrows()
     }
 
-    /// The samples of a scan that no mask covers.
+    /// The samples of a scan that no mask covers; fewer where nobody waits for them any more.
     ///
     /// # Errors
-    /// With `drop_invalid` false, what is wrong with the first sample that is not valid.
-    pub fn seen(&self, scan: usize, drop_invalid: bool) -> Result<Seen, String> {
+    /// The angles may be radians; with `drop_invalid` false, what is wrong with the first sample that is not valid.
+    pub fn seen(&self, scan: usize, drop_invalid: bool, until: Until) -> Result<Seen, String> {
+        self.in_degrees(scan)?;
         let mut samples = Vec::with_capacity(self.brdf.ncols());
         let (mut weights, mut left_out) = (weight::Count::default(), Counts::default());
         let mut deviations = Vec::new();
         for index in 0..self.brdf.ncols() {
+            if until.is_over() {
+                break;
+            }
             let at = [scan, index];
             let theta_i = self.theta_i[at];
             if self.mask.is_some_and(|mask| mask[at]) {
@@ -134,6 +143,19 @@ impl Scans<'_> {
             deviations,
             left_out,
         })
+    }
+
+    /// The reader's question whether degrees are radians, of the angles that may be asked.
+    fn in_degrees(&self, scan: usize) -> Result<(), String> {
+        let [theta_i, theta_s, delta_phi] = self.asked;
+        let row = |angles: &ArrayView2<'_, f64>, asked: bool| match asked {
+            true => doubt::largest(angles.row(scan).iter().copied()),
+            false => 0.0,
+        };
+        let polar = row(&self.theta_i, theta_i).max(row(&self.theta_s, theta_s));
+        let azimuths = self.delta_phi.row(scan);
+        let azimuths = azimuths.iter().copied().filter(|_| delta_phi);
+        doubt::degrees(polar, self.brdf.ncols(), azimuths).map_err(|error| error.in_exception())
     }
 
     /// One over the standard deviation of ln f; 0 or not finite where that is not a number above 0.

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 
 use crate::options::{reading, refuse};
 use crate::rows::Arrays;
-use crate::watch::apart;
+use crate::watch::{apart, scoped};
 
 /// A measured scan: samples in degrees and sr^-1, with what was left out of it.
 #[pyclass(frozen, module = "brdfit", name = "Scan")]
@@ -19,9 +19,10 @@ pub struct Scan(pub Measurement);
 
 /// The scan in arrays of shape (1, samples); `name` is what messages call it.
 #[pyfunction]
-pub fn scan(arrays: Arrays<'_>, drop_invalid: bool, name: &str) -> PyResult<Scan> {
+pub fn scan(py: Python<'_>, arrays: Arrays<'_>, drop_invalid: bool, name: &str) -> PyResult<Scan> {
     let scans = arrays.scans()?;
-    let seen = scans.seen(0, drop_invalid).map_err(PyValueError::new_err)?;
+    let seen = scoped(py, |until| scans.seen(0, drop_invalid, until), |_| Ok(()))?;
+    let seen = seen.map_err(PyValueError::new_err)?;
     Ok(Scan(Measurement {
         left_out: seen.left_out.list(),
         deviations: seen.deviations,
@@ -39,20 +40,24 @@ pub fn read(py: Python<'_>, paths: Vec<PathBuf>, words: Vec<String>) -> PyResult
 
 /// The scans in the bytes of a file, which messages call `name`.
 #[pyfunction]
-pub fn read_bytes(py: Python<'_>, name: String, bytes: Vec<u8>, words: Vec<String>) -> PyResult<Vec<Scan>> {
+pub fn read_bytes(py: Python<'_>, name: String, bytes: &[u8], words: Vec<String>) -> PyResult<Vec<Scan>> {
     let options = reading(&words)?;
+    let bytes = bytes.to_vec();
     let found = apart(py, move |_| input::parse(&name, &bytes, &options))?;
     Ok(found.map_err(|error| refuse(&error))?.into_iter().map(Scan).collect())
 }
 
 /// The table of several scans, which are named by their places.
 #[pyfunction]
-pub fn table(scans: Vec<Bound<'_, Scan>>) -> String {
-    let numbered = scans.iter().enumerate().map(|(place, scan)| Measurement {
-        name: Some(format!("{}", place + 1)),
-        ..scan.get().0.clone()
-    });
-    own::table(&numbered.collect::<Vec<_>>())
+pub fn table(py: Python<'_>, scans: Vec<Bound<'_, Scan>>) -> PyResult<String> {
+    let scans: Vec<&Measurement> = scans.iter().map(|scan| &scan.get().0).collect();
+    let numbered = || {
+        scans.iter().enumerate().map(|(place, scan)| Measurement {
+            name: Some(format!("{}", place + 1)),
+            ..(*scan).clone()
+        })
+    };
+    scoped(py, |_| own::table(&numbered().collect::<Vec<_>>()), |_| Ok(()))
 }
 
 impl Scan {
@@ -140,8 +145,8 @@ impl Scan {
     }
 
     /// The scan as the program's own table, which reads back to the same bits.
-    fn table(&self) -> String {
-        own::table(std::slice::from_ref(&self.0))
+    fn table(&self, py: Python<'_>) -> PyResult<String> {
+        scoped(py, |_| own::table(std::slice::from_ref(&self.0)), |_| Ok(()))
     }
 
     /// Samples.

@@ -1,5 +1,7 @@
 """Arrays that other libraries read wrongly: they are read right, or refused."""
 
+from collections import deque
+
 import numpy as np
 import pytest
 
@@ -63,7 +65,7 @@ def test_the_native_half_refuses_what_it_would_misread():
     records = np.zeros(3, dtype=[("f", "f8"), ("i", "i4")])["f"]
     good = np.zeros(3)
     with pytest.raises(ValueError, match="^theta_s is not at whole steps in memory"):
-        brdfit._brdfit.brdf("beckmann", good, records, good, np.zeros((3, 6)), False)
+        brdfit._brdfit.brdf("beckmann", [good, records, good], np.zeros((3, 6)), False, (0.0, 0.0))
 
 
 @pytest.mark.parametrize("dtype", [">f8", "f4", "i8", "f2"])
@@ -85,6 +87,55 @@ def test_units(plain):
     assert brdfit.brdf(np.pi / 4 * unit.radian, 0, plain) == pytest.approx(brdfit.brdf(45, 0, plain), rel=1e-14)
     with pytest.raises(ValueError, match="^theta_s is not in a unit of degree: "):
         brdfit.fit(45, THETA_S * unit.meter, MEASURED)
+
+
+def test_lists_of_quantities(plain):
+    pint = pytest.importorskip("pint")
+    unit = pint.UnitRegistry()
+    listed = [angle * unit.radian for angle in np.radians(THETA_S)]
+    cells = np.empty(171, dtype=object)
+    cells[:] = listed
+    for angles in (listed, tuple(listed), deque(listed), cells):
+        found = brdfit.scan(45, angles, [value / unit.steradian for value in MEASURED])
+        assert found.theta_s == pytest.approx(THETA_S, abs=1e-12) and found.brdf.tolist() == MEASURED.tolist()
+    many = brdfit.fit_many(45, THETA_S, [[value / unit.steradian for value in MEASURED]] * 2)
+    assert many.x[1].tobytes() == plain.x.tobytes()
+    masked = np.ma.masked_array(np.radians(THETA_S), mask=HIGH) * unit.radian
+    assert len(brdfit.scan(45, masked, MEASURED)) == np.count_nonzero(~HIGH)
+
+
+def test_units_of_something_else_are_refused():
+    pint = pytest.importorskip("pint")
+    unit = pint.UnitRegistry()
+    for name, arguments in {
+        "brdf": (45, THETA_S, MEASURED * unit.degree),
+        "theta_i": (0.7 / unit.steradian, THETA_S, MEASURED),
+        "theta_s": (45, [unit.Quantity(angle, "") for angle in THETA_S], MEASURED),
+    }.items():
+        with pytest.raises(ValueError, match=f"^{name} is not in a unit of .*: its unit is "):
+            brdfit.scan(*arguments)
+    with pytest.raises(ValueError, match="^seed is not in a unit of numbers: "):
+        brdfit.fit(45, THETA_S, MEASURED, seed=3 * unit.meter)
+    half = brdfit.fit(45, THETA_S, MEASURED, aperture_half_angle=unit.Quantity(30, "arcminute"), starts=1)
+    assert half.aperture_half_angle == pytest.approx(0.5, rel=1e-14)
+
+
+def test_radians_are_asked_about(tmp_path, plain):
+    # As of a file with these numbers.
+    radians = np.radians(THETA_S)
+    for arguments in ((45, radians, MEASURED), (np.radians(THETA_I), radians, MEASURED)):
+        with pytest.raises(ValueError, match=r"are they radians\?; say angles rad if they are, and angles deg if not"):
+            brdfit.fit(*arguments)
+        with pytest.raises(ValueError, match=r"are they radians\?"):
+            brdfit.fit_many(*arguments[:2], [MEASURED])
+    assert brdfit.fit(np.radians(THETA_I), radians, MEASURED, angles="rad").x == pytest.approx(plain.x, rel=1e-3)
+    with pytest.raises(ValueError, match="^the azimuths are within 6.3 degrees and one is pi; "):
+        brdfit.scan(45, THETA_S, MEASURED, delta_phi=np.pi)
+    # A peak alone, in degrees, and one that is rightly in degrees.
+    assert brdfit.scan(0, np.linspace(-1, 1, 171), MEASURED, angles="deg").theta_s[0] == -1
+    assert len(brdfit.scan([1.0, 1.5], [10, 20], [1, 1])) == 2
+    with pytest.raises(ValueError, match='^angles is \'grad\'; take "deg" or "rad"$'):
+        brdfit.scan(45, THETA_S, MEASURED, angles="grad")
 
 
 def test_units_of_astropy(plain):

@@ -219,6 +219,15 @@ TERM_SETS = r"terms takes one of: diffuse \| diffuse,surface \|"
         ((30, [], []), {}, "^brdf has no samples$"),
         ((30, ANGLES, VALUES), {"mask": VALUES > 0}, "^all samples are left out$"),
         ((30, ANGLES, VALUES), {"mask": VALUES}, "^mask has the type float64; give True where "),
+        ((30, ANGLES, VALUES), {"mask": np.ma.masked_array(VALUES < 0, mask=VALUES > 0)}, "^mask is masked itself; "),
+        ((30, ANGLES, VALUES), {"robust": "yes"}, "^robust is 'yes'; take True or False$"),
+        ((30, ANGLES, VALUES), {"drop_invalid": "no"}, "^drop_invalid is 'no'; take True or False$"),
+        ((30, ANGLES, VALUES), {"prior": {"n": 1.5}}, r"^prior\['n'\] is 1.5; give \(value, standard error\)$"),
+        ((30, ANGLES, VALUES), {"prior": ("n", 1)}, r"^prior is not a mapping; write prior=\{'?\"n\": \(1.5, 0.02\)\}$"),
+        ((30, ANGLES, VALUES), {"certify": "1%"}, "^certify is '1%'; take a part above 0 and below 1, such as 0.05$"),
+        ((30, ANGLES, VALUES), {"certify": 0.1, "proof_boxes": 1.5}, "^proof_boxes is 1.5; take a whole number from 1 "),
+        ((30, ANGLES, VALUES), {"certify": 0.1, "proof_seconds": "a"}, "^proof_seconds is 'a'; take a number above 0$"),
+        ((30, ANGLES, VALUES), {"proof_boxes": 9}, "^proof_boxes is what a proof may take; give certify too"),
     ],
 )
 def test_bad_input_is_one_clear_line(arguments, keywords, message):
@@ -227,7 +236,17 @@ def test_bad_input_is_one_clear_line(arguments, keywords, message):
     assert "\n" not in str(caught.value)
 
 
+def test_options_in_the_words_of_python():
+    plain = brdfit.fit(30, ANGLES, VALUES)
+    assert brdfit.fit(30, ANGLES, VALUES, robust=np.False_, drop_invalid=np.True_).x.tobytes() == plain.x.tobytes()
+    pair = brdfit.fit(30, ANGLES, VALUES, prior={"n": (1.5, 0.02)}, robust=np.True_)
+    text = brdfit.fit(30, ANGLES, VALUES, prior={"n": "1.5+-0.02"}, robust=True)
+    assert pair.x.tobytes() == text.x.tobytes() and pair.json == text.json
+
+
 def test_bad_input_of_many():
+    with pytest.raises(ValueError, match=r"^each\[0\] is None; give keywords of the search, "):
+        brdfit.fit_many(30, ANGLES, [VALUES], each=[None])
     with pytest.raises(ValueError, match=r"^brdf has the shape \(10,\); fit_many takes \(scans, samples\)"):
         brdfit.fit_many(30, ANGLES, VALUES)
     with pytest.raises(ValueError, match="^threads is 0; "):

@@ -23,6 +23,9 @@ LONG = {
     "profile": "brdfit.profile(scan, bootstrap=1_000_000)",
     "calibrate": "brdfit.profile(scan, calibrate=1_000_000)",
     "joint": "brdfit.joint([scan] * 8, starts=100_000)",
+    "aperture": "brdfit.fit(45, dense, wandering, aperture_half_angle=2)",
+    "a long scan, profiled": "brdfit.profile(brdfit.scan(45, dense, wandering))",
+    "table": "[brdfit.scan(45, dense, wandering).table() for _ in range(9)]",
     "report": "brdfit.report(scan, method='paper', starts=1_000_000)",
 }
 SCRIPT = f"""

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -74,6 +75,38 @@ def test_what_follows_from_a_fit(read, fitted):
     assert at["theta_i_deg"] == 45 and at["reflectance"]["value"] > 1 and not at["energy_conserved"]
     assert len(fitted.undetermined) == 1 and fitted.undetermined[0].startswith("rho_s, rho_v, n and kappa only ")
     assert fitted.hints == []
+
+
+def test_what_follows_is_seen_by_the_instrument(read):
+    truth = {"rho_d": 0.1, "rho_s": 10, "m": 0.1, "n": 3, "kappa": 1}
+    shifted = brdfit.brdf(45, read.theta_s - 1, truth)
+    fit = brdfit.fit(45, read.theta_s, shifted, fit_offset=True)
+    assert fit.offset == pytest.approx(1, abs=1e-6) and fit.offset == fit.table["offset_deg"]
+    assert np.sum(fit.residuals**2) < 1e-12 and fit.curve() == pytest.approx(shifted, rel=1e-6)
+    # That of the material has neither offset nor aperture.
+    assert brdfit.brdf(45, 30, fit) == pytest.approx(brdfit.brdf(45, 30, truth), rel=1e-6)
+    file = read_back(fit)
+    assert file.residuals.tobytes() == fit.residuals.tobytes() and file.svg() == fit.svg()
+    drawn = brdfit.fit(45, read.theta_s - 1, shifted)
+    assert fit.svg().count("<circle") == drawn.svg().count("<circle")
+
+    wide = brdfit.fit(read, aperture_half_angle=2, starts=1)
+    assert wide.aperture_half_angle == pytest.approx(2, rel=1e-14)
+    assert np.sum(wide.residuals**2) == pytest.approx(wide.fun, rel=1e-9)
+    assert np.sum(np.log(wide.curve() / read.brdf) ** 2) == pytest.approx(wide.fun, rel=1e-9)
+
+
+def read_back(fit):
+    return pickle.loads(pickle.dumps(fit))
+
+
+@pytest.mark.parametrize("options", [{}, {"robust": True}, {"prior": {"n": (1.5, 0.02)}}])
+def test_residuals_are_what_is_minimised(read, options):
+    for sigma in (None, 0.1 * read.brdf + 0.001):
+        fit = brdfit.fit(read.theta_i, read.theta_s, read.brdf, sigma=sigma, **options)
+        kept = np.delete(fit.residuals, fit.outliers)
+        pull = 0 if "prior" not in options else fit.fun - np.sum(kept**2)
+        assert pull >= 0 and np.sum(kept**2) + pull == pytest.approx(fit.fun, rel=1e-9)
 
 
 def test_models_by_name(read, fitted):
@@ -162,6 +195,62 @@ def test_joint(read):
     assert list(found.parameters[0]) == list(brdfit.NAMES)
 
 
+def test_joint_repeats(read):
+    others = [DATA / f"testdata1_sym_seed{seed}.csv" for seed in (2, 3)]
+    found = brdfit.joint([read, *brdfit.read(others)], repeats=True, scale_uncertainty=0.03)
+    printed = program("joint", FILE, *others, "--repeats", "--scale-uncertainty", "3%", "--format", "json")
+    printed = json.loads(printed)
+    assert found.quantities == printed["quantities"] and found.model == "beckmann"
+    table = pytest.importorskip("pandas") and found.to_pandas()
+    assert table["expanded"][0] == printed["quantities"][0]["budget"]["expanded"]
+    with pytest.raises(brdfit.Error, match="^repeats fits each run alone"):
+        brdfit.joint([read, read], "m", repeats=True)
+    with pytest.raises(TypeError, match=r"^joint\(\) takes several scans, or fits, in a list$"):
+        brdfit.joint(read)
+
+
+def test_one_material_of_three_scans(tmp_path):
+    files = [DATA / f"testdata{number}_sym_seed1.csv" for number in (1, 2, 3)]
+    fits = [brdfit.fit(one) for one in brdfit.read(files)]
+    (tmp_path / "rgb.json").write_text(program("fit", *files, "--format", "json"))
+    assert brdfit.export(fits, "gltf") == program("export", tmp_path / "rgb.json", "--to", "gltf")
+    assert brdfit.export(fits, "c", index=2) == brdfit.export(fits[1], "c")
+    table = "".join(
+        f"{i},{s},{wavelength},{f * wavelength / 500}\n" for wavelength in (450, 550) for i, s, f in scan(FILE.name).T
+    )
+    (tmp_path / "two.csv").write_text("theta_i_deg,theta_s_deg,wavelength_nm,brdf_per_sr\n" + table)
+    two = [brdfit.fit(one) for one in brdfit.read(tmp_path / "two.csv")]
+    assert len(brdfit.export(two, "rgl")) > 1.2 * len(brdfit.export(two[0], "rgl"))
+    with pytest.raises(TypeError, match=r"^export\(\) takes a Fit, or several in a list$"):
+        brdfit.export(["a"], "c")
+
+
+@pytest.mark.parametrize("package, call", [
+    ("pandas", "fit.to_pandas()"),
+    ("pandas", "many.to_pandas()"),
+    ("xarray", "many.to_xarray()"),
+    ("matplotlib", "fit.plot()"),
+])
+def test_what_is_missing_is_named(read, monkeypatch, package, call):
+    known = {"fit": brdfit.fit(read, starts=1), "many": brdfit.fit_many(45, read.theta_s, [read.brdf], starts=1)}
+    for name in [name for name in sys.modules if name.partition(".")[0] == package]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "meta_path", [Hidden(package), *sys.meta_path])
+    with pytest.raises(ModuleNotFoundError, match=f"needs {package}, which is not installed; get it with: pip install {package}$"):
+        eval(call, known)
+
+
+class Hidden:
+    """Finds nothing of a package."""
+
+    def __init__(self, package):
+        self.package = package
+
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] == self.package:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=self.package)
+
+
 def test_weights_and_outliers_reach_the_studies(read):
     sigma = read.brdf * (0.02 + 0.1 * np.abs(np.sin(read.theta_s)))
     weighted = brdfit.fit(read.theta_i, read.theta_s, read.brdf, sigma=sigma)
@@ -209,3 +298,11 @@ def test_progress(read, capsys):
     pytest.importorskip("tqdm")
     brdfit.fit_many(45, read.theta_s, [read.brdf] * 3, progress=True)
     assert "3/3" in capsys.readouterr().err
+
+
+def test_progress_without_tqdm(read, monkeypatch):
+    for name in [name for name in sys.modules if name.partition(".")[0] == "tqdm"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setattr(sys, "meta_path", [Hidden("tqdm"), *sys.meta_path])
+    with pytest.warns(UserWarning, match="^progress=True needs tqdm, .* pip install tqdm; it goes on without$"):
+        brdfit.fit_many(45, read.theta_s, [read.brdf], progress=True, starts=1)

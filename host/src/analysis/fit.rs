@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 use brdfit_core::geometry::Sample;
+use rayon::prelude::*;
 
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
@@ -16,6 +17,9 @@ use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
 use crate::until::until;
+
+/// Samples that a thread takes at least.
+const SHARE: usize = 4096;
 
 /// One fitted scan.
 #[derive(Clone, Debug)]
@@ -225,6 +229,16 @@ pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Err
     }
 }
 
+/// Model less measurement in ln f, times the weight, of every sample of a fitted measurement, as it was fitted ([`deviations::settled`]) and as the instrument sees the model; NaN beyond the horizon, and where nobody waits for them any more.
+pub fn residuals(measurement: &Measurement, outcome: &Outcome) -> Vec<f64> {
+    let (view, until) = (outcome.view(), until());
+    let one = |sample: &Sample<f64>| match until.is_over() {
+        true => f64::NAN,
+        false => view.residual(sample).unwrap_or(f64::NAN),
+    };
+    measurement.samples.par_iter().with_min_len(SHARE).map(one).collect()
+}
+
 /// The samples that were fitted, and all that was left out.
 fn without_outliers<'a>(measurement: &'a Measurement, outcome: &Outcome) -> (Cow<'a, [Sample<f64>]>, Vec<LeftOut>) {
     let (all, mut left_out) = (&measurement.samples, measurement.left_out.clone());
@@ -246,8 +260,10 @@ fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
     let groups = order.chunk_by(|a, b| a.theta_i == b.theta_i);
+    let until = until();
     let one = |group: &[&Sample<f64>]| {
-        let squares = group.iter().filter_map(|sample| {
+        let wanted = group.iter().take_while(|_| !until.is_over());
+        let squares = wanted.filter_map(|sample| {
             let residual = view.residual(sample)?;
             Some(residual * residual)
         });

@@ -38,7 +38,7 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
 }
 
 /// The largest of some finite numbers without their signs; 0 without any.
-fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+pub fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.filter(|x| x.is_finite()).map(f64::abs).fold(0.0, f64::max)
 }
 
@@ -59,29 +59,39 @@ fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
         }
     };
     match unit {
-        Angles::Deg if scan.rows.len() > 2 && polar > 0.0 && polar <= RIGHT_ANGLE => Err(at(Error::new(format!(
-            "all angles are within {} degrees; are they radians?",
-            shortest(polar)
-        ))
-        .help("say --angles rad if they are, and --angles deg if not"))),
         Angles::Rad if polar > RIGHT_ANGLE && polar <= 180.0 => Err(at(Error::new(format!(
             "an angle is {polar} radians, beyond the horizon; are they degrees?"
         ))
         .help("say --angles deg if they are, and --angles rad if not"))),
         Angles::Deg => {
-            let azimuths = || scan.rows.iter().filter_map(|row| row.delta_phi);
-            let turn = std::f64::consts::TAU;
-            let half = |phi: f64| [0.5 * turn, turn].iter().any(|angle| (phi.abs() - angle).abs() < 5e-3);
-            if largest(azimuths()) <= turn + 5e-3 && azimuths().any(half) {
-                return Err(at(Error::new(
-                    "the azimuths are within 6.3 degrees and one is pi; are they radians?",
-                )
-                .help("give all angles in one unit, or say --angles deg if all are degrees")));
-            }
-            Ok(())
+            let azimuths = scan.rows.iter().filter_map(|row| row.delta_phi);
+            degrees(polar, scan.rows.len(), azimuths).map_err(at)
         }
         Angles::Rad => Ok(()),
     }
+}
+
+/// Asks whether angles that are taken for degrees are radians: `polar` is the largest of so many samples without its sign.
+///
+/// # Errors
+/// They may be, which an option settles.
+pub fn degrees(polar: f64, samples: usize, azimuths: impl Iterator<Item = f64> + Clone) -> Result<(), Error> {
+    if samples > 2 && polar > 0.0 && polar <= RIGHT_ANGLE {
+        return Err(Error::new(format!(
+            "all angles are within {} degrees; are they radians?",
+            shortest(polar)
+        ))
+        .help("say --angles rad if they are, and --angles deg if not"));
+    }
+    let turn = std::f64::consts::TAU;
+    let half = |phi: f64| [0.5 * turn, turn].iter().any(|angle| (phi.abs() - angle).abs() < 5e-3);
+    if largest(azimuths.clone()) <= turn + 5e-3 && azimuths.clone().any(half) {
+        return Err(
+            Error::new("the azimuths are within 6.3 degrees and one is pi; are they radians?")
+                .help("give all angles in one unit, or say --angles deg if all are degrees"),
+        );
+    }
+    Ok(())
 }
 
 /// Turns what is beyond three quarters of a turn to negative angles, and refuses scattering angles over more than half a turn.

@@ -7,6 +7,7 @@ use super::measurement::{Measurement, label};
 use super::units::azimuth;
 use crate::document::write_row;
 use crate::number::shortest;
+use crate::until::until;
 
 /// The samples of scans as a table: angles in degrees where these read back to the same bits, and else in radians; BRDF in sr^-1.
 ///
@@ -14,7 +15,8 @@ use crate::number::shortest;
 pub fn table(scans: &[Measurement]) -> String {
     let all = || scans.iter().flat_map(|scan| &scan.samples);
     let out_of_plane = all().any(|sample| sample.delta_phi != f64::PI);
-    let in_degrees = all().all(|sample| {
+    let until = until();
+    let in_degrees = all().take_while(|_| !until.is_over()).all(|sample| {
         let polar = [sample.theta_i, sample.theta_s]
             .iter()
             .all(|&angle| degrees(angle, f64::to_radians).is_some());
@@ -44,6 +46,10 @@ pub fn table(scans: &[Measurement]) -> String {
                 let shown = if in_degrees { degrees(radians, back) } else { None };
                 shortest(shown.unwrap_or(radians))
             };
+            // Of millions of rows, which take seconds, nobody may wait any more.
+            if until.is_over() {
+                break;
+            }
             let mut row: Vec<String> = Vec::new();
             row.extend((scans.len() > 1).then(|| scan.name.clone().unwrap_or_else(|| scan.file.clone())));
             row.push(angle(sample.theta_i, f64::to_radians));

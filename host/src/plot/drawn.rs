@@ -27,13 +27,15 @@ impl Drawn {
     /// Those that were fitted, and those that were left out before and in the fit, each where it is: an offset of theta_s is taken off.
     pub fn of_fit(measurement: &Measurement, outcome: &Outcome) -> Drawn {
         let outliers = outcome.robust.as_ref().map_or(&[][..], |robust| &robust.outliers);
-        let mut drawn = Drawn::without(measurement, outliers);
-        if let Some(offset) = outcome.offset {
-            for sample in drawn.samples.iter_mut().chain(&mut drawn.left_out) {
-                *sample = moved(sample, offset.value).unwrap_or(*sample);
-            }
+        Drawn::without(measurement, outliers).moved(outcome.offset.map_or(0.0, |offset| offset.value))
+    }
+
+    /// The same where they are if the instrument reads this much too much for theta_s, radians.
+    pub fn moved(mut self, offset: f64) -> Drawn {
+        for sample in self.samples.iter_mut().chain(&mut self.left_out) {
+            *sample = moved(sample, offset).unwrap_or(*sample);
         }
-        drawn
+        self
     }
 
     /// Those of a scan, of which the ones in these places are shown as left out.

@@ -15,7 +15,7 @@ All angles are in degrees and the BRDF is in sr^-1, as in the files of the progr
 | `brdf` | the model at any angles |
 | `profile` | which values of a parameter a scan allows; bootstrap |
 | `compare` | which model a scan needs |
-| `joint` | several scans that share parameters |
+| `joint` | several scans that share parameters; the budget over repeats |
 | `report`, `export` | the page on fits; the model for other programs |
 
 What the program refuses is an `Error`, which is a `ValueError`: one line, with the kind of fault, the file and its line apart.
@@ -26,7 +26,7 @@ from ._brdfit import models as _models
 from ._errors import Error
 from ._fit import brdf, fit, fit_many, read, scan
 from ._options import Reading, Search
-from ._studies import Comparison, Interval, Joint, Profile, Profiles, compare, export, joint, profile, report
+from ._studies import Comparison, Interval, Joint, Profile, Profiles, Repeats, compare, export, joint, profile, report
 from .results import MESSAGES, NAMES, Fit, Fits, Minimum
 
 MODELS: dict[str, str] = dict(_models())
@@ -46,6 +46,7 @@ __all__ = [
     "Profile",
     "Profiles",
     "Reading",
+    "Repeats",
     "Scan",
     "Search",
     "brdf",

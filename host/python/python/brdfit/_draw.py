@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ._needed import needed
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -28,9 +30,8 @@ def signed(scan: Scan) -> NDArray[np.float64]:
 def plot(fit: Fit, ax: Axes | None) -> Axes:
     """Log BRDF over the signed scattering angle: measured, left out by a robust fit, and fitted; in the plane of incidence."""
     if ax is None:
-        from matplotlib import pyplot
-
-        ax = pyplot.subplots()[1]
+        made: Axes = needed("matplotlib.pyplot", "plot()").subplots()[1]
+        ax = made
     scan = fit.scan
     theta_i, theta_s, measured = scan.theta_i, signed(scan), scan.brdf
     used = np.ones(len(scan), bool)

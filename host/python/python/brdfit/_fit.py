@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import copyreg
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _brdfit, _options
-from ._arrays import DEGREES, array, azimuth, broadcast, numbers, rows, together
+from ._arrays import DEGREES, Angles, array, azimuth, broadcast, numbers, rows, together
 from ._brdfit import Scan
 from ._errors import Error
+from ._needed import needed
 from .results import Fit, Fits
 
 if TYPE_CHECKING:
@@ -48,6 +50,7 @@ def scan(
     delta_phi: ArrayLike | None = None,
     sigma: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    angles: Angles | None = None,
     drop_invalid: bool = False,
     name: str = "scan",
 ) -> Scan:
@@ -61,6 +64,7 @@ def scan(
     delta_phi : azimuths of scattering less those of incidence in degrees, 180 is forward; shape (samples,), or one number; by default all is in plane.
     sigma : standard deviations of brdf in sr^-1, above 0, of which only the ratios count for the parameters; shape (samples,), or one number; by default all samples have the same relative one.
     mask : True where a sample is to be left out; shape (samples,). Masked arrays bring their own masks.
+    angles : "deg" or "rad", for angles without a unit of their own; by default degrees, and refused where they may be radians.
     drop_invalid : leaves out samples that are not valid, such as NaN; `left_out` of the scan counts them.
     name : what messages and pages call it.
 
@@ -70,11 +74,12 @@ def scan(
     ------
     ValueError : a sample is not valid, or all are left out; one line that says which.
     """
-    arrays = together(theta_i, theta_s, brdf, delta_phi, sigma, mask)
+    arrays, asked = together(theta_i, theta_s, brdf, delta_phi, sigma, mask, angles)
     shape = arrays["brdf"].shape
     if len(shape) != 1:
         raise ValueError(f"brdf has the shape {shape}; this takes one scan, fit_many several")
-    found = _brdfit.scan(rows(arrays), bool(drop_invalid), str(name))
+    with told():
+        found = _brdfit.scan(rows(arrays, asked), _options.flag("drop_invalid", drop_invalid), str(name))
     if len(found) == 0:
         raise ValueError("all samples are left out")
     return found
@@ -111,6 +116,7 @@ def fit(
     delta_phi: ArrayLike | None = None,
     sigma: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    angles: Angles | None = None,
     drop_invalid: bool = False,
     certify: float | None = None,
     proof_boxes: int | None = None,
@@ -121,7 +127,7 @@ def fit(
 
     Parameters
     ----------
-    theta_i, theta_s, brdf, delta_phi, sigma, mask, drop_invalid : the samples, as for `scan`; or a `Scan` in place of all of them.
+    theta_i, theta_s, brdf, delta_phi, sigma, mask, angles, drop_invalid : the samples, as for `scan`; or a `Scan` in place of all of them.
     certify : proves that no parameters within the bounds have an MSE^2 lower by more than this part, such as 0.05, or finds them; of the default model. `certificate` of the result says what is proved.
     proof_boxes, proof_seconds : what the proof may take at most.
     search : model, terms, bounds, robust, prior, fit_offset, aperture_half_angle, scale_uncertainty, conserve_energy, method, starts, seed, precision, threads: see `Search`.
@@ -131,14 +137,21 @@ def fit(
     ValueError : a sample or an argument is not valid, or there are fewer samples than parameters.
     """
     if isinstance(theta_i, Scan):
-        if not all(given is None for given in (theta_s, brdf, delta_phi, sigma, mask)) or drop_invalid:
+        if not all(given is None for given in (theta_s, brdf, delta_phi, sigma, mask, angles)) or drop_invalid:
             raise TypeError("fit() takes a Scan alone, or arrays")
         subject = theta_i
     elif theta_s is None or brdf is None:
         raise TypeError("fit() takes a Scan, or theta_i, theta_s and brdf")
     else:
         subject = scan(
-            theta_i, theta_s, brdf, delta_phi=delta_phi, sigma=sigma, mask=mask, drop_invalid=drop_invalid
+            theta_i,
+            theta_s,
+            brdf,
+            delta_phi=delta_phi,
+            sigma=sigma,
+            mask=mask,
+            angles=angles,
+            drop_invalid=drop_invalid,
         )
     words = _options.search(search, "fit")
     claim = proof(certify, proof_boxes, proof_seconds)
@@ -150,15 +163,18 @@ def proof(
     part: float | None, boxes: int | None, seconds: float | None
 ) -> tuple[float, int | None, float | None] | None:
     """What is to be proved, if anything, and what that may take."""
+    limits = {"proof_boxes": boxes, "proof_seconds": seconds}
     if part is None:
+        for name, limit in limits.items():
+            if limit is not None:
+                raise ValueError(f"{name} is what a proof may take; give certify too, such as certify=0.05")
         return None
-    if not 0 < float(part) < 1:
-        raise ValueError(f"certify is {part}; take a part above 0 and below 1, such as 0.05")
-    if boxes is not None and not 0 < boxes < 2**64:
-        raise ValueError(f"proof_boxes is {boxes}; take a whole number from 1 on")
-    if seconds is not None and not 0 < seconds < np.inf:
-        raise ValueError(f"proof_seconds is {seconds}; take a number above 0")
-    return float(part), boxes, seconds
+    part = _options.between("certify", part, 1, "a part above 0 and below 1, such as 0.05")
+    if boxes is not None:
+        boxes = _options.whole("proof_boxes", boxes, 1, 2**64 - 1)
+    if seconds is not None:
+        seconds = _options.between("proof_seconds", seconds, np.inf, "a number above 0")
+    return part, boxes, seconds
 
 
 def fit_many(
@@ -169,6 +185,7 @@ def fit_many(
     delta_phi: ArrayLike | None = None,
     sigma: ArrayLike | None = None,
     mask: ArrayLike | None = None,
+    angles: Angles | None = None,
     drop_invalid: bool = False,
     each: Iterable[_options.Search] | None = None,
     progress: bool = False,
@@ -180,30 +197,36 @@ def fit_many(
     ----------
     theta_i, theta_s, delta_phi : angles in degrees, as for `fit`; any shape that broadcasts to that of `brdf`, such as (samples,).
     brdf : measured BRDF in sr^-1, above 0; shape (scans, samples), or (..., samples). An xarray.DataArray gives the result its axes.
+    angles : as for `scan`.
     sigma, mask : as for `fit`; any shape that broadcasts to that of `brdf`.
     drop_invalid : leaves out samples that are not valid, such as NaN; a scan with too few others has NaN for a result and does not count as a success.
     each : keywords of the search for each scan, in C order, which go before those for all.
-    progress : shows how far it is, if tqdm is installed.
+    progress : shows how far it is, with tqdm; where that is not installed, a warning says so.
     search : as for `fit`, for all scans.
 
     Raises
     ------
     ValueError : a sample of any scan or an argument is not valid; scans count from 0, in C order.
     """
-    arrays = together(theta_i, theta_s, brdf, delta_phi, sigma, mask)
+    arrays, asked = together(theta_i, theta_s, brdf, delta_phi, sigma, mask, angles)
     shape = arrays["brdf"].shape
     if len(shape) < 2:
         raise ValueError(f"brdf has the shape {shape}; fit_many takes (scans, samples), fit takes one scan")
     count = int(np.prod(shape[:-1]))
     words = [_options.search(search, "fit_many")]
     if each is not None:
+        each = list(each)
+        for place, one in enumerate(each):
+            if not isinstance(one, Mapping):
+                raise ValueError(f'each[{place}] is {one!r}; give keywords of the search, such as {{"seed": 1}}')
         words = [_options.search({**search, **one, "threads": search.get("threads")}, "fit_many") for one in each]
         if len(words) != count:
             raise ValueError(f"each has options for {len(words)} scans, and brdf has {count}")
         if len(words) == 0:
             words = [_options.search(search, "fit_many")]
-    with told(), _bar(count, progress) as advance:
-        found = _brdfit.fit_many(rows(arrays), words, bool(drop_invalid), advance)
+    drop_invalid = _options.flag("drop_invalid", drop_invalid)
+    with told(), _bar(count, _options.flag("progress", progress)) as advance:
+        found = _brdfit.fit_many(rows(arrays, asked), words, drop_invalid, advance)
     return Fits._of(found, shape[:-1], *_axes(brdf, len(shape) - 1))
 
 
@@ -222,8 +245,9 @@ def _bar(count: int, wanted: bool) -> Iterator[Any]:
         yield None
         return
     try:
-        from tqdm.auto import tqdm
-    except ImportError:
+        tqdm = needed("tqdm.auto", "progress=True").tqdm
+    except ModuleNotFoundError as missing:
+        warnings.warn(f"{missing}; it goes on without", stacklevel=4)
         yield None
         return
     with tqdm(total=count, unit="scan") as bar:
@@ -244,7 +268,7 @@ def brdf(
     Parameters
     ----------
     theta_i, theta_s, delta_phi : angles in degrees, as for `fit`; of shapes that broadcast together.
-    parameters : a `Fit`; or parameters by name; or an array of shape (..., parameters) in the order of `NAMES`, or of the model's, whose leading shape broadcasts with that of the angles; or `Fits` of one model, whose shape gets an axis for the angles.
+    parameters : a `Fit`, whose BRDF is the material's: `Fit.curve` has it as the instrument sees it, with the offset and the aperture of the fit; or parameters by name; or an array of shape (..., parameters) in the order of `NAMES`, or of the model's, whose leading shape broadcasts with that of the angles; or `Fits` of one model, whose shape gets an axis for the angles.
         By name, what is left out is absent: weights and kappa are 0, all else is 1.
     model : a name of `MODELS`; a `Fit` brings its own.
     ln : gives ln of the BRDF, which is right also where the BRDF itself is 0 because it underflows.
@@ -288,7 +312,7 @@ def brdf(
     shape = broadcast([*angles, "parameters"], [*(angle.shape for angle in angles.values()), x.shape[:-1]])
     flat = {name: np.broadcast_to(angle, shape).reshape(-1) for name, angle in angles.items()}
     x = np.broadcast_to(x, (*shape, len(names))).reshape(-1, len(names))
-    values_of = _brdfit.brdf(model, **flat, x=x, ln=ln).reshape(shape)
+    values_of = _brdfit.brdf(model, list(flat.values()), x, ln, (0.0, 0.0)).reshape(shape)
     for mask in masks:
         values_of = np.where(np.broadcast_to(mask, shape), np.nan, values_of)
     return values_of

@@ -10,6 +10,8 @@ from typing import Any, Literal, TypedDict
 
 import numpy as np
 
+from ._arrays import DEGREES, in_unit
+
 Bounds = Mapping[str, "float | tuple[float, float]"]
 
 
@@ -24,8 +26,8 @@ class Search(TypedDict, total=False):
     """Of parameters by name, `(least, largest)` or the number at which it is fixed, in the parameter's unit; the others have those of their model."""
     robust: bool
     """Leaves out samples far from the fit, 6 robust standard deviations of ln BRDF."""
-    prior: Mapping[str, str]
-    """What parameters are known to be from elsewhere: {"n": "1.50+-0.02"}."""
+    prior: Mapping[str, str | tuple[float, float]]
+    """What parameters are known to be from elsewhere, value and standard error: {"n": (1.5, 0.02)}, or {"n": "1.50+-0.02"} as the program has it."""
     fit_offset: bool
     """Fits the offset of the zero of theta_s too, up to 10 degrees; for scans in the plane of incidence."""
     aperture_half_angle: float
@@ -80,8 +82,11 @@ class Reading(TypedDict, total=False):
 
 # Least and largest of whole numbers.
 _WHOLE = {"seed": (0, 2**64 - 1), "threads": (1, 1024), "starts": (1, 1_000_000)}
+_FLAGS = {"robust", "fit_offset", "conserve_energy", "repeats", "one_scan", "merl_whole", "drop_invalid", "absolute_sigma", "correct_ln_bias"}
+# What quantities of pint and astropy are taken in; others must be plain numbers.
+_UNITS = dict.fromkeys(("aperture_half_angle", "mask_retro", "max_angle", "theta_i"), DEGREES) | {"wavelength": "nanometer"}
 # One word for each entry, in place of one for all.
-_REPEATED = {"weight_angle", "prior"}
+_REPEATED = {"weight_angle"}
 
 
 def words(options: Mapping[str, Any], known: Iterable[str], caller: str) -> list[str]:
@@ -91,8 +96,11 @@ def words(options: Mapping[str, Any], known: Iterable[str], caller: str) -> list
     for name, value in options.items():
         if name not in names:
             raise TypeError(f"{caller}() has no option {name!r}; its options are {', '.join(names)}")
+        value = in_unit(name, value, _UNITS.get(name))
         if name in _WHOLE and value is not None:
-            _check_whole(name, value, *_WHOLE[name])
+            whole(name, value, *_WHOLE[name])
+        if name in _FLAGS and value is not None:
+            value = flag(name, value)
         option = "--" + name.replace("_", "-")
         if value is None or value is False:
             continue
@@ -100,6 +108,8 @@ def words(options: Mapping[str, Any], known: Iterable[str], caller: str) -> list
             found.append(option)
         elif name == "bounds":
             found += _bounds(value)
+        elif name == "prior" and not isinstance(value, str):
+            found += _prior(value)
         elif isinstance(value, Mapping):
             entries = [f"{_word(name, key)}={_word(name, entry)}" for key, entry in value.items()]
             found += [f"{option}={entry}" for entry in entries] if name in _REPEATED else [f"{option}={','.join(entries)}"]
@@ -140,13 +150,47 @@ def _bounds(bounds: Any) -> list[str]:
     return found
 
 
-def _check_whole(name: str, value: Any, least: int, largest: int) -> None:
+def _prior(prior: Any) -> list[str]:
+    if not isinstance(prior, Mapping):
+        raise ValueError('prior is not a mapping; write prior={"n": (1.5, 0.02)}')
+    found = []
+    for name, known in prior.items():
+        if not isinstance(known, str):
+            pair = np.asarray(known)
+            if pair.shape != (2,) or pair.dtype.kind not in "fiu":
+                raise ValueError(f"prior[{name!r}] is {known!r}; give (value, standard error)")
+            known = "{!r}+-{!r}".format(*map(float, pair))
+        found.append(f"--prior={name}={known}")
+    return found
+
+
+def whole(name: str, value: Any, least: int, largest: int) -> int:
+    """A whole number."""
     try:
-        whole = operator.index(value)
+        number = operator.index(value)
     except TypeError:
-        whole = least - 1
-    if isinstance(value, bool) or not least <= whole <= largest:
+        number = least - 1
+    if isinstance(value, bool) or not least <= number <= largest:
         raise ValueError(f"{name} is {value!r}; take a whole number from {least} to {largest}")
+    return number
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or False; NumPy's too."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} is {value!r}; take True or False")
+    return bool(value)
+
+
+def between(name: str, value: Any, largest: float, what: str) -> float:
+    """A number above 0 and below the largest; `what` says what to take."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = 0.0
+    if not 0 < number < largest:
+        raise ValueError(f"{name} is {value!r}; take {what}")
+    return number
 
 
 def _word(name: str, value: Any) -> str:

@@ -15,6 +15,7 @@ from . import _brdfit, _options
 from ._brdfit import Scan
 from ._command import exported, run, write
 from ._fit import proof, told
+from ._needed import needed
 from .results import Fit
 
 if TYPE_CHECKING:
@@ -151,10 +152,10 @@ class Comparison:
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a model, as a pandas.DataFrame, best first."""
-        import pandas as pd
-
         rows = [{**one, **one["parameters"]} for one in self.models]
-        return pd.DataFrame(rows).drop(columns="parameters").set_index("model").sort_values("bic")
+        frame = needed("pandas", "to_pandas()").DataFrame(rows)
+        best_first: pd.DataFrame = frame.drop(columns="parameters").set_index("model").sort_values("bic")
+        return best_first
 
 
 def compare(of: Scan | Fit, models: str | Iterable[str] = "auto", *, seed: int = 0) -> Comparison:
@@ -196,23 +197,68 @@ class Joint:
     """The object that `brdfit joint --format json` writes."""
 
 
-def joint(scans: Sequence[Scan | Fit], share: str | Iterable[str] = "m", **search: Unpack[_options.Search]) -> Joint:
-    """Fits two to eight scans of one material together, such as wavelengths that share m.
+@dataclass(frozen=True, eq=False)
+class Repeats:
+    """The budget of uncertainty over runs of one sample."""
+
+    model: str
+    """The model that was fitted to each."""
+    quantities: list[dict[str, Any]]
+    """Of each parameter and derived quantity its name, unit, values and standard errors of the runs, runs_that_disagree (from 1), and budget: mean, between, within, type_a, type_b, combined, coverage_factor, expanded, ...; None if a run does not tell it."""
+    details: dict[str, Any]
+    """The object that `brdfit joint --repeats --format json` writes."""
+
+    def to_pandas(self) -> pd.DataFrame:
+        """One row a quantity, with its budget, as a pandas.DataFrame."""
+        rows = [{**one, **(one["budget"] or {})} for one in self.quantities]
+        frame: pd.DataFrame = needed("pandas", "to_pandas()").DataFrame(rows).drop(columns="budget")
+        return frame
+
+
+@overload
+def joint(
+    scans: Sequence[Scan | Fit],
+    share: str | Iterable[str] | None = None,
+    *,
+    repeats: Literal[False] = False,
+    **search: Unpack[_options.Search],
+) -> Joint: ...
+@overload
+def joint(
+    scans: Sequence[Scan | Fit],
+    share: str | Iterable[str] | None = None,
+    *,
+    repeats: Literal[True],
+    **search: Unpack[_options.Search],
+) -> Repeats: ...
+def joint(
+    scans: Sequence[Scan | Fit],
+    share: str | Iterable[str] | None = None,
+    *,
+    repeats: bool = False,
+    **search: Unpack[_options.Search],
+) -> Joint | Repeats:
+    """Fits two to eight scans of one material together, such as wavelengths that share m; or compares runs of one sample.
 
     Parameters
     ----------
     scans : the scans, or fits of them.
-    share : names of the parameters that are the same in all scans.
+    share : names of the parameters that are the same in all scans; "m" by default.
+    repeats : the scans, two or more, are runs of one sample: each is fitted alone, and the budget of uncertainty over them is made.
     search : as for `fit`.
 
     Raises
     ------
     ValueError : an argument is not valid, or the scans cannot be fitted.
     """
-    own = {"share": share}
+    if isinstance(scans, (Scan, Fit)):
+        raise TypeError("joint() takes several scans, or fits, in a list")
+    own = {"share": share, "repeats": repeats}
     words = ["--format=json", *_options.words(own, own, "joint"), *_options.search(search, "joint")]
     all_of_them = _brdfit.table([_subject(one, {})[0] for one in scans])
     details = json.loads(run("joint", words, all_of_them))
+    if repeats:
+        return Repeats(details["model"], details["quantities"], details)
     order = [name for name, *_ in _brdfit.names(details["model"])]
     return Joint(
         model=details["model"],
@@ -261,15 +307,19 @@ def report(
 
 
 @overload
-def export(fit: Fit, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any) -> bytes: ...
+def export(
+    fit: Fit | Sequence[Fit], to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any
+) -> bytes: ...
 @overload
-def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
-def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str | bytes:
+def export(fit: Fit | Sequence[Fit], to: str, path: str | os.PathLike[str] | None = None, **options: Any) -> str: ...
+def export(
+    fit: Fit | Sequence[Fit], to: str, path: str | os.PathLike[str] | None = None, **options: Any
+) -> str | bytes:
     """The model for another program, as `brdfit export --to` writes it: text, or bytes in the form `rgl`.
 
     Parameters
     ----------
-    fit : the fit.
+    fit : the fit; or several of one material: red, green and blue, or for rgl those at several wavelengths, which the names of their scans say, such as "550 nm".
     to : zemax, zemax-abg, fred, glsl, mitsuba, mitsuba-native, c, rust, bird, openmaterial, ...
     path : where it is written too, if given.
     options : others of `brdfit export --help`, such as wavelength in nm or name.
@@ -278,4 +328,7 @@ def export(fit: Fit, to: str, path: str | os.PathLike[str] | None = None, **opti
     ------
     ValueError : the form does not exist, or cannot hold the model.
     """
-    return exported(fit.json, to, path, **options)
+    fits = [fit] if isinstance(fit, Fit) else list(fit)
+    if not fits or not all(isinstance(one, Fit) for one in fits):
+        raise TypeError("export() takes a Fit, or several in a list")
+    return exported(fits[0].json if len(fits) == 1 else f"[{','.join(one.json for one in fits)}]", to, path, **options)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _brdfit, _command, _draw
 from ._arrays import DEGREES, broadcast, numbers
+from ._needed import needed
 
 if TYPE_CHECKING:
     import os
@@ -76,6 +77,12 @@ class Fit:
     """Number of samples that were fitted."""
     status: int
     """How the best fit ended, see `MESSAGES`."""
+    residuals: NDArray[np.float64]
+    """Model, as the instrument sees it, less measurement in ln BRDF, times the weight of the sample: what is squared in `fun`, with weights and ln BRDF as they were fitted, which standard deviations change; of every sample of the scan, outliers too; NaN beyond the horizon; shape (samples,)."""
+    aperture_half_angle: float
+    """Half-angle of the cone that the detector sees, degrees; 0 for a point."""
+    offset: float
+    """What the instrument reads for theta_s = 0, degrees, positive forward; 0 if it was not fitted."""
     at_bound: tuple[str, ...]
     """Names of the parameters that ended on a bound."""
     minima: tuple[Minimum, ...]
@@ -141,19 +148,13 @@ class Fit:
         """What a person would say of the scan and its fit."""
         return [hint["text"] for hint in self.details.get("hints", [])]
 
-    @property
-    def residuals(self) -> NDArray[np.float64]:
-        """Model less measurement in ln BRDF, times the weight of the sample; of every sample of the scan, outliers too; shape (samples,)."""
-        scan = self.scan
-        return scan.weight * (self._model(scan.theta_i, scan.theta_s, scan.delta_phi, ln=True) - np.log(scan.brdf))
-
     def curve(
         self,
         theta_s: ArrayLike | None = None,
         theta_i: ArrayLike | None = None,
         delta_phi: ArrayLike = 180.0,
     ) -> NDArray[np.float64]:
-        """The fitted BRDF in sr^-1 at angles in degrees: by default at those of the scan; theta_i may be left out if the scan has only one."""
+        """The fitted BRDF in sr^-1 at angles in degrees, as the instrument reads and sees it, with the offset and the aperture of the fit, which `brdfit.brdf` leaves out: by default at the angles of the scan; theta_i may be left out if the scan has only one. NaN where an offset leads beyond the horizon or out of the plane of incidence."""
         scan = self.scan
         if theta_s is None:
             return self._model(scan.theta_i, scan.theta_s, scan.delta_phi)
@@ -165,14 +166,15 @@ class Fit:
         return self._model(theta_i, theta_s, delta_phi)
 
     def _model(
-        self, theta_i: ArrayLike, theta_s: ArrayLike, delta_phi: ArrayLike, ln: bool = False
+        self, theta_i: ArrayLike, theta_s: ArrayLike, delta_phi: ArrayLike
     ) -> NDArray[np.float64]:
         given = {"theta_i": theta_i, "theta_s": theta_s, "delta_phi": delta_phi}
         angles = [numbers(name, angle, DEGREES) for name, angle in given.items()]
         shape = broadcast(given, [angle.shape for angle in angles])
-        i, s, phi = (np.broadcast_to(angle, shape).reshape(-1) for angle in angles)
-        x = np.broadcast_to(self.x, (i.size, self.x.size))
-        return _brdfit.brdf(self.model, i, s, phi, x, ln).reshape(shape)
+        flat = [np.broadcast_to(angle, shape).reshape(-1) for angle in angles]
+        x = np.broadcast_to(self.x, (flat[0].size, self.x.size))
+        seen = (self.aperture_half_angle, self.offset)
+        return _brdfit.brdf(self.model, flat, x, False, seen).reshape(shape)
 
     @overload
     def export(self, to: Literal["rgl"], path: str | os.PathLike[str] | None = None, **options: Any) -> bytes: ...
@@ -185,7 +187,7 @@ class Fit:
     def svg(self, title: str = "") -> str:
         """The picture of the scan with its distinct minima that `brdfit fit --plot` draws."""
         minima = [minimum.x.tolist() for minimum in self.minima]
-        return _brdfit.picture(self.scan, title, self.model, minima, list(self.outliers))
+        return _brdfit.picture(self.scan, title, self.model, minima, list(self.outliers), self.offset)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draws the scan and the best fit, log BRDF over the scattering angle, with Matplotlib."""
@@ -193,9 +195,8 @@ class Fit:
 
     def to_pandas(self) -> pd.Series[Any]:
         """The row of the table as a pandas.Series."""
-        import pandas as pd
-
-        return pd.Series(self.table, dtype=object)
+        row: pd.Series[Any] = needed("pandas", "to_pandas()").Series(self.table, dtype=object)
+        return row
 
     def __repr__(self) -> str:
         model = "" if self.names == NAMES and self.model == "beckmann" else f" of {self.model}"
@@ -270,22 +271,22 @@ class Fits:
 
     def to_pandas(self) -> pd.DataFrame:
         """One row a scan, as a pandas.DataFrame: the table, and what was fitted; of several axes the index has a level each."""
-        import pandas as pd
-
+        pandas = needed("pandas", "to_pandas()")
         levels = [self.coords.get(dim, range(length)) for dim, length in zip(self.dims, self.status.shape)]
-        index = pd.MultiIndex.from_product(levels, names=self.dims)
+        index = pandas.MultiIndex.from_product(levels, names=self.dims)
         if len(self.dims) == 1:
             index = index.get_level_values(0)
-        return pd.DataFrame({name: column.reshape(-1) for name, column in self._columns().items()}, index=index)
+        columns = {name: column.reshape(-1) for name, column in self._columns().items()}
+        frame: pd.DataFrame = pandas.DataFrame(columns, index=index)
+        return frame
 
     def to_xarray(self) -> xr.Dataset:
         """The same as an xarray.Dataset with the axes and coordinates of the BRDF, and the covariance."""
-        import xarray as xr
-
         data: dict[str, Any] = {name: (self.dims, column) for name, column in self._columns().items()}
         data["cov"] = ((*self.dims, "parameter", "parameter_2"), self.cov)
         named = {"parameter": list(self.names), "parameter_2": list(self.names)}
-        return xr.Dataset(data, coords=self.coords | named)
+        dataset: xr.Dataset = needed("xarray", "to_xarray()").Dataset(data, coords=self.coords | named)
+        return dataset
 
     def __repr__(self) -> str:
         lines = [

@@ -91,7 +91,9 @@ fn makes_energy(samples: &[Sample<f64>], outcome: &Outcome, place: usize, more: 
         return false;
     }
     let angles = || samples.iter().map(|sample| sample.theta_i);
-    let ends = [angles().fold(f64::INFINITY, f64::min), angles().fold(0.0, f64::max)];
+    let (least, most) = (angles().fold(f64::INFINITY, f64::min), angles().fold(0.0, f64::max));
+    // Most files of a batch have one.
+    let ends = if least < most { &[least, most][..] } else { &[least] };
     let slope = |theta_i: f64| reflectance(&outcome.material(), theta_i).1[place];
     ends.iter().any(|&theta_i| more * slope(theta_i) > 1.0)
 }

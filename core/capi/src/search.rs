@@ -27,6 +27,16 @@ pub struct Behind<T> {
     count: usize,
 }
 
+impl<T> Behind<T> {
+    /// For a search that is moved before anything else.
+    const fn nowhere() -> Self {
+        Behind {
+            first: core::ptr::null_mut(),
+            count: 0,
+        }
+    }
+}
+
 impl<T: Copy> Memory for Behind<T> {
     type Item = T;
     fn items(&self) -> &[T] {
@@ -186,7 +196,14 @@ fn begin_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
             fits.first.add(place).write(Trial::EMPTY);
         }
         let place = (&raw mut (*state).search).cast::<Search<R, P>>();
-        place.write(SearchIn::over(minima, fits));
+        // Made when it is compiled, it is zeros to be written; made here, it would lie on the stack first.
+        place.write(
+            const {
+                let (minima, fits) = (Behind::nowhere(), Behind::nowhere());
+                SearchIn::over(minima, fits)
+            },
+        );
+        (*place).moved(minima, fits);
         &mut *place
     };
     let bounds = bounds::<R, TERMS, P>(options);

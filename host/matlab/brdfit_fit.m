@@ -13,9 +13,10 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %   x         [rho_d rho_s rho_v m n kappa], dimensionless (Eq. 14 of Bishop, Butler and Marciniak, 2021, or GGX);
 %             of absent terms rho and kappa are 0, m and n are 1
 %   resnorm   sum(residual(:).^2)
-%   residual  ln of the model less ln brdf, times brdf / sigma if there is a sigma; of the size of brdf
+%   residual  ln of the model less ln brdf; of the size of brdf. With a sigma over the standard deviation of ln brdf, which
+%             is that of sigma over the fitted brdf, and with ln brdf raised by what noise of that size takes from it on average
 %   exitflag  1: converged, 2: converged as far as rounding allows, 0: too many evaluations, as in lsqcurvefit
-%   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17),
+%   output    .iterations, .funcCount (model evaluations over the whole scan), .algorithm, .message, .mse2 (Eq. 17, with weights whose squares have a mean of 1),
 %             .model (its name), .minima (a struct array of the distinct minima found, best first: .x, .resnorm, .mse2, .hits),
 %             .stderr (standard errors of x; 0 where absent, held or on a bound, Inf where nothing is known),
 %             .correlation (6 x 6), .coverage_factor_95 (so many standard errors are the half of a 95 % interval),
@@ -30,7 +31,8 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %
 %   options is a struct with any of these fields; empty ones count as not given:
 %   delta_phi    azimuth of scattering less that of incidence in degrees; 180, in plane
-%   sigma        standard deviations of brdf in sr^-1; none, so that all samples have the same relative weight
+%   sigma        standard deviations of brdf in sr^-1, weighed as the program and Python do it; none, so that all samples
+%                have the same relative weight
 %   model        'beckmann' for Eq. 14, 'ggx' for the same with the wider tails of GGX, or 'auto' for the one that fits
 %                better: both have six parameters, so it has the least BIC; 'beckmann'
 %   terms        'all', or some of 'diffuse', 'surface', 'volume', 'absorbing' with commas between; 'all', which GGX needs
@@ -78,9 +80,9 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     ti = brdfit_row('theta_i', theta_i, numel(f)) * radian;
     ts = brdfit_row('theta_s', theta_s, numel(f)) * radian;
     dphi = brdfit_row('options.delta_phi', settings.delta_phi, numel(f)) * radian;
-    weight = ones(size(f));
+    sigma_over_f = ones(size(f));
     if ~isempty(settings.sigma)
-        weight = f ./ brdfit_row('options.sigma', settings.sigma, numel(f));
+        sigma_over_f = brdfit_row('options.sigma', settings.sigma, numel(f)) ./ f;
     end
     numbers = [whole('seed', settings.seed, 0, 2^53), terms_number(settings.terms), ...
         whole('candidates', settings.candidates, 1, 2^32 - 1), whole('MaxFunEvals', settings.MaxFunEvals, 1, 2^32 - 1), ...
@@ -93,10 +95,11 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     end
     resnorm = Inf;
     for k = 1:numel(models)
-        [fitted{1:5 + (nargout > 4)}] = brdfit_mex('fit', [ti; ts; dphi; f; weight], [numbers, brdfit_model(models{k}), has_sigma], ...
+        [fitted{1:7 + (nargout > 4)}] = brdfit_mex('fit', [ti; ts; dphi; f; sigma_over_f], [numbers, brdfit_model(models{k}), has_sigma], ...
             bound('lb', settings.lb), bound('ub', settings.ub));
-        if fitted{2} < resnorm
-            [x, resnorm, stop, passes, minima] = fitted{1:5};
+        if fitted{2} / fitted{7}^2 < resnorm
+            [x, cost, stop, passes, minima, samples, unit] = fitted{1:7};
+            resnorm = cost / unit^2;
             known = fitted{end};
             model = models{k};
         end
@@ -104,7 +107,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 
     if nargout > 2
         value = brdfit_mex('brdf', [ti; ts; dphi], x, brdfit_model(model));
-        residual = reshape((log(value) - log(f)) .* weight, size(brdf));
+        residual = reshape((log(value) - log(samples(1, :))) .* samples(2, :) / unit, size(brdf));
     end
     flags = [1 2 0];
     messages = {'converged in resnorm', 'converged as far as rounding allows', 'MaxFunEvals evaluations were made'};
@@ -112,7 +115,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
     if nargout > 4
         output = struct('iterations', passes(1), 'funcCount', passes(2) + passes(3), ...
             'algorithm', 'global search with bounded Levenberg-Marquardt', 'message', messages{stop}, ...
-            'mse2', resnorm / numel(f)^2, 'model', model);
+            'mse2', cost / numel(f)^2, 'model', model);
         output.stderr = known(1:6);
         output.correlation = reshape(known(7:42), 6, 6);
         output.coverage_factor_95 = known(43);
@@ -123,7 +126,7 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
         output.condition = known(49);
         output.minima = struct('x', {}, 'resnorm', {}, 'mse2', {}, 'hits', {});
         for k = 1:size(minima, 2)
-            output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k), ...
+            output.minima(k) = struct('x', minima(1:6, k).', 'resnorm', minima(7, k) / unit^2, ...
                 'mse2', minima(7, k) / numel(f)^2, 'hits', minima(8, k));
         end
     end

@@ -1,10 +1,11 @@
-function test_brdfit(expected, expected_ggx)
+function test_brdfit(expected, expected_ggx, expected_sigma, with_sigma)
 % TEST_BRDFIT  Tests of brdfit_fit and brdfit_brdf.
 %
 %   test_brdfit
 %   test_brdfit('fits.csv')   also compares bits with what the program printed:
 %                             brdfit fit tests/data/testdata1_sym_seed1.csv tests/data/testdata2_sym_seed1.csv ... --format csv
 %   test_brdfit('fits.csv', 'ggx.csv')   and what it printed with --model ggx
+%   test_brdfit('fits.csv', 'ggx.csv', 'sigma.csv', 'scan.csv')   and of a scan with a column of standard deviations
 
     data = fullfile(fileparts(mfilename('fullpath')), '..', '..', 'tests', 'data');
     names = {'testdata1_sym_seed1.csv', 'testdata2_sym_seed1.csv', 'testdata3_sym_seed1.csv'};
@@ -33,9 +34,9 @@ function test_brdfit(expected, expected_ggx)
         % As many standard errors as parameters inside their bounds.
         assert(max(abs(diag(output.correlation) - (output.stderr.' > 0))) < 1e-14 && output.condition >= 1);
         close_to(output.scale, sqrt(resnorm / (numel(f) - sum(output.stderr > 0))), 1e-12);
-        % Rows, one number for theta_i, and sigma in proportion to brdf change nothing.
+        % Rows and one number for theta_i change nothing.
         assert(isequal(brdfit_fit(ti(1), ts.', f.'), x));
-        assert(isequal(brdfit_fit(ti, ts, f, struct('sigma', f, 'delta_phi', 180, 'seed', [])), x));
+        assert(isequal(brdfit_fit(ti, ts, f, struct('sigma', [], 'delta_phi', 180, 'seed', [])), x));
         if nargin > 0
             same_bits(expected, k, x, output.mse2);
             same_errors(expected, k, output);
@@ -65,7 +66,8 @@ function test_brdfit(expected, expected_ggx)
     % The residuals are independent: noise in equal parts above and below the model.
     options = struct('lb', [0 0 0.05 1e-5 1.5 0.5], 'ub', [1 100 0.05 10 1.5 0.5]);
     signs = 1 - 2 * mod(floor((1:numel(f)).' .^ 2 * 0.6180339887), 2);
-    noisy = eq14([0.1 5 0.05 0.1 1.5 0.5], ti, ts) .* (1 + 0.03 * signs);
+    clean = eq14([0.1 5 0.05 0.1 1.5 0.5], ti, ts);
+    noisy = clean .* (1 + 0.03 * signs);
     [y, resnorm_y, ~, ~, output] = brdfit_fit(ti, ts, noisy, options);
     assert(isnan(output.correlated_over_deg));
     free = [1 2 4];
@@ -82,18 +84,28 @@ function test_brdfit(expected, expected_ggx)
     close_to(output.correlation(1, 2), covariance(1, 2) / sqrt(covariance(1, 1) * covariance(2, 2)), 1e-4);
     % Errors of a sigma that chi^2 does not refute are its own, whatever the residuals; of one that it does, those of these.
     scale = output.scale;
-    [~, ~, ~, ~, own] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', scale * noisy));
-    [~, ~, ~, ~, refuted] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', 10 * scale * noisy));
+    [~, ~, ~, ~, own] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', scale * clean));
+    [~, ~, ~, ~, refuted] = brdfit_fit(ti, ts, noisy, setfield(options, 'sigma', 2 * scale * clean));
     close_to(own.stderr(free), output.stderr(free), 0.2);
     close_to(refuted.stderr(free), output.stderr(free), 0.2);
-    % Twice the sigma is a quarter of resnorm; a sample with a large one hardly counts.
-    [~, half] = brdfit_fit(ti, ts, f, struct('sigma', 2 * f));
-    close_to(half, resnorm / 4, 1e-12);
+    % Twice the sigma is a quarter of resnorm, but for what such noise takes from ln f; a sample with a large one hardly counts.
+    [~, one] = brdfit_fit(ti, ts, f, struct('sigma', 1e-3 * f));
+    [~, half, residual] = brdfit_fit(ti, ts, f, struct('sigma', 2e-3 * f));
+    close_to(half, one / 4, 1e-3);
+    close_to(sum(residual.^2), half, 1e-12);
+    if nargin > 2
+        table = dlmread(with_sigma, ',', 1, 0);
+        [y, ~, ~, ~, output] = brdfit_fit(table(:, 1), table(:, 2), table(:, 3), struct('sigma', table(:, 4)));
+        same_bits(expected_sigma, 1, y, output.mse2);
+        same_errors(expected_sigma, 1, output);
+    end
     spoilt = f;
     spoilt(7) = 100 * f(7);
-    sigma = f;
+    sigma = 1e-3 * f;
     sigma(7) = 1e9 * f(7);
-    close_to(brdfit_fit(ti, ts, spoilt, struct('sigma', sigma))(1), x(1), 1e-3);
+    others = [1:6, 8:numel(f)];
+    without = brdfit_fit(ti(others), ts(others), f(others), struct('sigma', sigma(others)));
+    close_to(brdfit_fit(ti, ts, spoilt, struct('sigma', sigma))(1), without(1), 1e-6);
     % Out of plane.
     [a, b] = deal(brdfit_brdf(30, 40, x, 180), brdfit_brdf(30, -40, x, 0));
     close_to(a, b, 1e-12);

@@ -1,13 +1,14 @@
 /*
  * The MEX behind brdfit_fit.m and brdfit_brdf.m, which check the form of what they give to it:
  *
- *   [x, resnorm, stop, passes, minima, known] = brdfit_mex ("fit", samples, settings, lb, ub)
+ *   [x, cost, stop, passes, minima, fitted, unit, known] = brdfit_mex ("fit", samples, settings, lb, ub)
  *   f = brdfit_mex ("brdf", directions, x, model)
  *
- * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, weight. settings is [seed, terms,
- * candidates, max_passes, cost_tolerance, step_tolerance, model, sigma], where NaN stands for the usual value and sigma
- * is 1 if weights are brdf / sigma, else 0. passes is [of the best fit, without derivatives, with derivatives], minima
- * 8 x k: parameters, cost, hits, and known 1 x 49: standard errors, correlations, the coverage factor of 95 %, the
+ * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, 1. settings is [seed, terms, candidates,
+ * max_passes, cost_tolerance, step_tolerance, model, sigma], where NaN stands for the usual value and sigma is 1 if the
+ * last row of samples is sigma / brdf, else 0. passes is [of the best fit, without derivatives, with derivatives],
+ * minima 8 x k: parameters, cost, hits; fitted 2 x n: brdf and weight as they were fitted, unit the standard deviation
+ * of ln brdf that a weight of 1 stands for, 1 without sigma; known 1 x 49: standard errors, correlations, the coverage factor of 95 %, the
  * effective degrees of freedom, the angle over which residuals are correlated in degrees or NaN, the least and the
  * largest factor of that on errors; scale, condition. directions is 3 x n.
  * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
@@ -25,8 +26,11 @@
 /* host/matlab/src/lib.rs */
 typedef struct {
     uint64_t seed;
-    uint32_t candidates, terms, ggx, sigma;
+    uint32_t candidates, terms, ggx;
+    double sigma_ln;
 } asked_of_search;
+double brdfit_matlab_weighted(double *samples, size_t count, const asked_of_search *asked, const double *lower,
+                              const double *upper);
 int32_t brdfit_matlab_known(const double *samples, size_t count, const asked_of_search *asked, const double *lower,
                             const double *upper, const double *x, double *to);
 
@@ -86,8 +90,17 @@ static void put_params(double *x, const brdfit_params_f64 *params) {
 
 static mxArray *scalar(double value) { return mxCreateDoubleScalar(value); }
 
+static void fill(brdfit_scan_f64 *scan, brdfit_block_f64 *memory, size_t blocks, const double *samples, size_t count) {
+    check(brdfit_scan_init_f64(scan, memory, blocks));
+    for (size_t i = 0; i < count; i++) {
+        const double *row = samples + 5 * i;
+        const brdfit_sample_f64 sample = {row[0], row[1], row[2], row[3], row[4]};
+        check_sample(brdfit_scan_add_f64(scan, &sample, 1), i);
+    }
+}
+
 static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
-    const double *samples = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 8);
+    const double *given = matrix(input[1], 5, 0), *settings = matrix(input[2], 1, 8);
     const size_t count = mxGetN(input[1]), blocks = BRDFIT_BLOCKS(count);
     brdfit_scan_f64 scan;
     brdfit_options_f64 options;
@@ -97,12 +110,9 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
     char *memory = mxMalloc(blocks * sizeof(brdfit_block_f64) + BRDFIT_BLOCK_ALIGNMENT);
     memory += (BRDFIT_BLOCK_ALIGNMENT - (uintptr_t)memory % BRDFIT_BLOCK_ALIGNMENT) % BRDFIT_BLOCK_ALIGNMENT;
 
-    check(brdfit_scan_init_f64(&scan, (brdfit_block_f64 *)memory, blocks));
-    for (size_t i = 0; i < count; i++) {
-        const double *row = samples + 5 * i;
-        const brdfit_sample_f64 sample = {row[0], row[1], row[2], row[3], row[4]};
-        check_sample(brdfit_scan_add_f64(&scan, &sample, 1), i);
-    }
+    double *samples = mxMalloc((5 * count + 1) * sizeof(double));
+    memcpy(samples, given, 5 * count * sizeof(double));
+    fill(&scan, (brdfit_block_f64 *)memory, blocks, samples, count);
     check(brdfit_options_init_f64(&options));
     options.seed = (uint64_t)settings[0];
     options.terms = (uint32_t)settings[1];
@@ -117,6 +127,16 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
     options.model = (uint32_t)settings[6];
     options.lower = params(matrix(input[3], 1, 6));
     options.upper = params(matrix(input[4], 1, 6));
+    asked_of_search asked = {options.seed, mxIsNaN(settings[2]) ? 0 : options.candidates, options.terms,
+                             options.model != BRDFIT_MODEL_BECKMANN, 0};
+    /* Threads of the program's library stay, so the code must. */
+    if (!mexIsLocked())
+        mexLock();
+    if (settings[7] != 0) {
+        asked.sigma_ln = brdfit_matlab_weighted(samples, count, &asked, mxGetPr(input[3]), mxGetPr(input[4]));
+        fill(&scan, (brdfit_block_f64 *)memory, blocks, samples, count);
+    }
+    const double unit = settings[7] != 0 ? asked.sigma_ln : 1;
     check(brdfit_search_f64(&scan, &options, minima, MINIMA, &found));
 
     output[0] = mxCreateDoubleMatrix(1, 6, mxREAL);
@@ -141,19 +161,21 @@ static void fit(int outputs, mxArray *output[], const mxArray *input[]) {
         }
     }
     if (outputs > 5) {
+        output[5] = mxCreateDoubleMatrix(2, count, mxREAL);
+        for (size_t i = 0; i < count; i++)
+            memcpy(mxGetPr(output[5]) + 2 * i, samples + 5 * i + 3, 2 * sizeof(double));
+    }
+    if (outputs > 6)
+        output[6] = scalar(unit);
+    if (outputs > 7) {
         brdfit_uncertainty_f64 known;
-        const asked_of_search asked = {options.seed, mxIsNaN(settings[2]) ? 0 : options.candidates, options.terms,
-                                       options.model != BRDFIT_MODEL_BECKMANN, settings[7] != 0};
         check(brdfit_uncertainty_at_f64(&scan, &options, &found.best.params, &known));
-        output[5] = mxCreateDoubleMatrix(1, KNOWN + 2, mxREAL);
-        double *values = mxGetPr(output[5]);
-        /* Its threads stay, so the code must. */
-        if (!mexIsLocked())
-            mexLock();
+        output[7] = mxCreateDoubleMatrix(1, KNOWN + 2, mxREAL);
+        double *values = mxGetPr(output[7]);
         if (brdfit_matlab_known(samples, count, &asked, mxGetPr(input[3]), mxGetPr(input[4]), mxGetPr(output[0]),
                                 values))
             check(BRDFIT_ERROR_NO_FIT);
-        values[KNOWN] = known.scale;
+        values[KNOWN] = known.scale / unit;
         values[KNOWN + 1] = known.condition;
     }
 }

@@ -1,8 +1,10 @@
-//! What the MEX links: the functions of the C interface, and one of the program's library, for errors that account for residuals which are alike along the angle.
+//! What the MEX links: the functions of the C interface, and two of the program's library: for weights by standard deviations, and for errors that account for residuals which are alike along the angle.
 
 // For its C functions.
 use brdfit_capi as _;
 
+use brdfit::analysis::choose::Wanted;
+use brdfit::analysis::deviations::settled;
 use brdfit::analysis::fit::known;
 use brdfit::analysis::misfit::coverage_factor;
 use brdfit::engine::uncertainty::Uncertainty;
@@ -30,13 +32,79 @@ pub struct Asked {
     pub terms: u32,
     /// 0 for Eq. 14, else GGX.
     pub ggx: u32,
-    /// 0 for weights that are none of standard deviations.
-    pub sigma: u32,
+    /// What [`brdfit_matlab_weighted`] has returned; 0 for weights that are none of standard deviations.
+    pub sigma_ln: f64,
+}
+
+impl Asked {
+    fn options(&self, [lower, upper]: [[f64; PARAMETERS]; 2]) -> Option<FitOptions> {
+        Some(FitOptions {
+            seed: self.seed,
+            starts: (self.candidates > 0).then_some(self.candidates),
+            terms: u8::try_from(self.terms).ok()?,
+            lower: Values::from(lower),
+            upper: Values::from(upper),
+            ..FitOptions::of(Model::find(if self.ggx == 0 { "beckmann" } else { "ggx" })?)
+        })
+    }
+}
+
+fn sample(row: &[f64]) -> Sample<f64> {
+    Sample {
+        theta_i: row[0],
+        theta_s: row[1],
+        delta_phi: row[2],
+        brdf: row[3],
+        weight: row[4],
+    }
+}
+
+/// Gives samples, whose weights are standard deviations over BRDF, the weights and ln f that the program fits: of standard deviations over the fitted f, and without what noise takes from ln f.
+///
+/// Returns the standard deviation of ln f that a weight of 1 stands for.
+///
+/// # Safety
+/// `samples` has `5 * count` numbers; `lower` and `upper` have 6 each.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn brdfit_matlab_weighted(
+    samples: *mut f64,
+    count: usize,
+    asked: &Asked,
+    lower: &[f64; PARAMETERS],
+    upper: &[f64; PARAMETERS],
+) -> f64 {
+    // SAFETY: the caller's.
+    let numbers = unsafe { std::slice::from_raw_parts_mut(samples, SAMPLE * count) };
+    let given = numbers.chunks_exact(SAMPLE).map(sample);
+    let deviation = |sample: Sample<f64>| Deviation {
+        absolute: sample.weight * sample.brdf,
+        relative: 0.0,
+    };
+    let deviations = given.clone().map(deviation).collect();
+    let over = |sample: Sample<f64>| Sample {
+        weight: 1.0 / sample.weight,
+        ..sample
+    };
+    let mut samples: Vec<Sample<f64>> = given.map(over).collect();
+    let sigma_ln = weight::normalised(&mut samples);
+    let mut measurement = Measurement {
+        deviations,
+        ..Measurement::of_samples("samples", samples, Some(sigma_ln))
+    };
+    // What cannot be fitted is told by the search.
+    if let Some(options) = asked.options([*lower, *upper]) {
+        measurement = settled(measurement, &Wanted::One(options));
+    }
+    for (row, sample) in numbers.chunks_exact_mut(SAMPLE).zip(&measurement.samples) {
+        row[3] = sample.brdf;
+        row[4] = sample.weight;
+    }
+    measurement.sigma_ln.unwrap_or(sigma_ln)
 }
 
 /// Writes what the program knows of the fit `x` of these samples: 6 standard errors, 6 x 6 correlations, standard errors that are the half of a 95 % interval, effective degrees of freedom, the angle in degrees over which residuals are correlated (NaN if they are not), and the least and the largest factor by which that raises errors.
 ///
-/// With standard deviations the weights are 1 over those of ln f. Returns 0, or 1 if there is no fit.
+/// Returns 0, or 1 if there is no fit.
 ///
 /// # Safety
 /// `samples` has `5 * count` numbers, `lower`, `upper` and `x` have 6 each, and `to` has room for 47.
@@ -63,35 +131,13 @@ pub unsafe extern "C" fn brdfit_matlab_known(
 fn uncertainty(
     numbers: &[f64],
     asked: &Asked,
-    [lower, upper]: [[f64; PARAMETERS]; 2],
+    bounds: [[f64; PARAMETERS]; 2],
     x: [f64; PARAMETERS],
 ) -> Option<Uncertainty> {
-    let options = FitOptions {
-        seed: asked.seed,
-        starts: (asked.candidates > 0).then_some(asked.candidates),
-        terms: u8::try_from(asked.terms).ok()?,
-        lower: Values::from(lower),
-        upper: Values::from(upper),
-        ..FitOptions::of(Model::find(if asked.ggx == 0 { "beckmann" } else { "ggx" })?)
-    };
-    let sample = |row: &[f64]| Sample {
-        theta_i: row[0],
-        theta_s: row[1],
-        delta_phi: row[2],
-        brdf: row[3],
-        weight: row[4],
-    };
-    let mut samples: Vec<Sample<f64>> = numbers.chunks_exact(SAMPLE).map(sample).collect();
-    let deviation = |sample: &Sample<f64>| Deviation {
-        absolute: sample.brdf / sample.weight,
-        relative: 0.0,
-    };
-    let deviations = samples.iter().map(deviation).filter(|_| asked.sigma != 0).collect();
-    let sigma_ln = (asked.sigma != 0).then(|| weight::normalised(&mut samples));
-    let measurement = Measurement {
-        deviations,
-        ..Measurement::of_samples("samples", samples, sigma_ln)
-    };
+    let options = asked.options(bounds)?;
+    let samples = numbers.chunks_exact(SAMPLE).map(sample).collect();
+    let sigma_ln = (asked.sigma_ln != 0.0).then_some(asked.sigma_ln);
+    let measurement = Measurement::of_samples("samples", samples, sigma_ln);
     let outcome = fit_from(&measurement.samples, &options, &[Values::from(x)]).ok()?;
     let (Outcome { uncertainty, .. }, _) = known(&measurement, &measurement.samples, &options, outcome);
     Some(uncertainty)

@@ -93,7 +93,7 @@ pub fn report(
         let wanted = asked.until(until);
         let over = || until.is_over();
         let goal = claim.map(|claim| goal(claim, &over));
-        let section = |scan: &&Measurement| Section::new(scan, &wanted, goal.as_ref());
+        let section = |scan: &&Measurement| Section::new(&settled((*scan).clone(), &wanted), &wanted, goal.as_ref());
         let sections = || scans.iter().map(section).collect();
         let sections: Result<Vec<Section>, _> = asked.on_threads(sections)?;
         Ok(html::page(&sections?, told))

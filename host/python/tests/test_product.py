@@ -258,6 +258,11 @@ def test_weights_and_outliers_reach_the_studies(read):
     assert brdfit.profile(weighted, "m").cost == weighted.fun
 
 
+def test_a_page_weighs_standard_deviations_as_a_fit_does(read):
+    fit = brdfit.fit(read.theta_i, read.theta_s, read.brdf, sigma=0.1 * read.brdf + 0.001)
+    assert f"{fit.x[0]:.4g}" in brdfit.report(fit)
+
+
 def test_page_exports_and_notebooks(read, fitted, tmp_path):
     page = brdfit.report(fitted, tmp_path / "page.html")
     assert page.startswith("<!DOCTYPE html>") and (tmp_path / "page.html").read_text() == page

@@ -104,7 +104,10 @@ fn three_results_are_one_colour() {
         )
     };
     let gltf = run("gltf", "3,2,1");
-    assert!(gltf.errors.starts_with("against the fitted model -"), "{}", gltf.errors);
+    assert!(gltf.errors.starts_with("red is paint.csv 650 nm, green "), "{}", gltf.errors);
+    // Without an index the longest wavelength is red.
+    let unordered = program::brdfit(&["export", "-", "--to", "gltf"], &results([BLUE, GREEN, RED]));
+    assert_eq!((unordered.code, &unordered.output), (0, &gltf.output));
     let material = &serde_json::from_str::<Value>(&gltf.output).unwrap()["materials"][0];
     let base: Vec<f64> = material["pbrMetallicRoughness"]["baseColorFactor"]
         .as_array()
@@ -120,7 +123,7 @@ fn three_results_are_one_colour() {
     assert!((1.0..2.0).contains(&ior), "{ior}");
     let surface = run("openpbr", "3,2,1");
     assert!(
-        surface.errors.starts_with("against the fitted model -"),
+        surface.errors.contains("; against the fitted model -"),
         "{}",
         surface.errors
     );
@@ -212,6 +215,11 @@ fn openmaterial_reads_back_and_has_what_its_schema_requires() {
             .flat_map(|row| row.iter().zip(largest))
             .all(|(x, most)| (0.0..=most).contains(x))
     );
+    let three = program::brdfit(&["export", "-", "--to", "openmaterial"], &results([BLUE, GREEN, RED]));
+    assert_eq!(three.code, 0, "{}", three.errors);
+    let scans = input::parse("x", three.output.as_bytes(), &ReadOptions::default()).unwrap();
+    let names: Vec<_> = scans.iter().map(|scan| scan.name.as_deref().unwrap()).collect();
+    assert_eq!(names, ["450 nm", "550 nm", "650 nm"]);
     // The same material has the same identifier, another one another.
     let uuid = |more: &[&str]| {
         let file: Value = serde_json::from_str(&export(more).output).unwrap();

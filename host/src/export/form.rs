@@ -90,10 +90,7 @@ pub fn write(form: Form, models: &[Model], wavelength: Option<f64>) -> Result<(V
         Form::C => (constants::c(one()?)?, None),
         Form::Rust => (constants::rust(one()?)?, None),
         Form::Bird => (bird::write(one()?), None),
-        Form::Openmaterial => {
-            let model = one()?;
-            (openmaterial::write(model, length(wavelength, model)?), None)
-        }
+        Form::Openmaterial => (openmaterial::write(&by_length(wavelength, models)?), None),
     };
     Ok((text.into_bytes(), deviation))
 }

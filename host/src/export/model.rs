@@ -1,5 +1,6 @@
 //! The model that is exported, from a result or from parameters.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 use brdfit_core::brdf::Params;
@@ -40,7 +41,7 @@ impl Model {
         }
     }
 
-    /// From results of `brdfit fit --format json`: all of them, or those that `index` (from 1) chooses, in its order.
+    /// From results of `brdfit fit --format json`: those that `index` (from 1) chooses, in its order; without it all, with the longest wavelength first, as red comes before blue.
     ///
     /// # Errors
     /// It is no such result, there are not so many, or their parameters have no BRDF.
@@ -52,7 +53,11 @@ impl Model {
             one => std::slice::from_ref(one),
         };
         if index.is_empty() {
-            return results.iter().map(Model::of_result).collect();
+            let mut models = results.iter().map(Model::of_result).collect::<Result<Vec<_>, Error>>()?;
+            if models.iter().all(|model| model.wavelength.is_some()) {
+                models.sort_by(|a, b| b.wavelength.partial_cmp(&a.wavelength).unwrap_or(Ordering::Equal));
+            }
+            return Ok(models);
         }
         let chosen = index.iter().map(|&index| {
             let result = index.checked_sub(1).and_then(|place| results.get(place));

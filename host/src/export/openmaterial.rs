@@ -13,13 +13,44 @@ const SCHEMA: &str =
 /// What the format wants to know and a fit does not tell.
 const NOT_STATED: &str = "not stated";
 
-/// The file; `wavelength` is in nm.
+/// The file; each of `models` is one wavelength, in nm, rising, and there is at least one.
 ///
 /// Angles are in radians, azimuth 0 is that of incidence and half a turn is forward.
-pub fn write(model: &Model, wavelength: f64) -> String {
-    let metres = wavelength * 1e-9;
-    let width = model.material.width();
+pub fn write(models: &[(f64, &Model)]) -> String {
     let mut table = Vec::new();
+    for (wavelength, model) in models {
+        rows(model, wavelength * 1e-9, &mut table);
+    }
+    let names: Vec<&str> = models.iter().map(|(_, model)| model.name.as_str()).collect();
+    let origins: Vec<&str> = models.iter().map(|(_, model)| model.origin.as_str()).collect();
+    let wavelengths: Vec<f64> = models.iter().map(|(wavelength, _)| wavelength * 1e-9).collect();
+    let of = models[0].1.material.model;
+    let table: Vec<Value> = table.into_iter().map(|row| json!(row)).collect();
+    let mut metadata = json!({
+        "$schema": SCHEMA,
+        "metadata": {
+            "name": names.join(", "),
+            "description": format!("{}. Model: {} ({}).", origins.join("; "), of.name, of.source),
+            "uuid": uuid(models),
+            "materialVersion": "1.0.0",
+            "openMaterial3dVersion": "1.0.0",
+            "copyrights": [NOT_STATED],
+            "license": NOT_STATED,
+            "authors": [NOT_STATED],
+            "sources": "measurement, fitted model",
+        },
+    });
+    metadata["brdf"] = json!({ "wavelengths": wavelengths, "lookupTable": table });
+    // Only maps with other keys than strings, and failing writers, can make this fail.
+    serde_json::to_string(&metadata)
+        .unwrap_or_default()
+        .replace("],[", "],\n[")
+        + "\n"
+}
+
+/// Appends the rows of one model.
+fn rows(model: &Model, metres: f64, table: &mut Vec<[f64; 5]>) {
+    let width = model.material.width();
     for theta_i in (0..=85).step_by(5).map(f64::from) {
         let near = near(theta_i, width);
         for &theta_s in &near {
@@ -29,27 +60,6 @@ pub fn write(model: &Model, wavelength: f64) -> String {
             }
         }
     }
-    let table: Vec<Value> = table.into_iter().map(|row| json!(row)).collect();
-    let mut metadata = json!({
-        "$schema": SCHEMA,
-        "metadata": {
-            "name": model.name,
-            "description": format!("{}. Modified Cook-Torrance model of Bishop, Butler and Marciniak (2021).", model.origin),
-            "uuid": uuid(model, wavelength),
-            "materialVersion": "1.0.0",
-            "openMaterial3dVersion": "1.0.0",
-            "copyrights": [NOT_STATED],
-            "license": NOT_STATED,
-            "authors": [NOT_STATED],
-            "sources": "measurement, fitted model",
-        },
-    });
-    metadata["brdf"] = json!({ "wavelengths": [metres], "lookupTable": table });
-    // Only maps with other keys than strings, and failing writers, can make this fail.
-    serde_json::to_string(&metadata)
-        .unwrap_or_default()
-        .replace("],[", "],\n[")
-        + "\n"
 }
 
 /// Scattering angles in degrees: even steps, and finer ones over a lobe of slope m, which is as wide as 2 atan m in them.
@@ -79,11 +89,13 @@ fn azimuths(theta_s: f64, m: f64) -> Vec<f64> {
 }
 
 /// The same for the same material, as the format asks: version 8 of RFC 9562, of a hash.
-fn uuid(model: &Model, wavelength: f64) -> String {
+fn uuid(models: &[(f64, &Model)]) -> String {
     let mut hash = Sha256::new();
-    hash.update(model.name.as_bytes());
-    for number in model.material.values.iter().copied().chain([wavelength]) {
-        hash.update(number.to_le_bytes());
+    for (wavelength, model) in models {
+        hash.update(model.name.as_bytes());
+        for number in model.material.values.iter().chain([wavelength]) {
+            hash.update(number.to_le_bytes());
+        }
     }
     let mut bytes = [0u8; 16];
     bytes.copy_from_slice(&hash.finalize()[..16]);

@@ -50,7 +50,7 @@ pub fn gltf(models: &[Model]) -> Result<(String, String), Error> {
         },
         "extensionsUsed": ["KHR_materials_ior"],
         "materials": [{
-            "name": models[0].name,
+            "name": word(&models[0].name),
             "pbrMetallicRoughness": {
                 "baseColorFactor": [red, green, blue, 1.0],
                 "metallicFactor": surface.metallic,

@@ -104,7 +104,11 @@ fn three_results_are_one_colour() {
         )
     };
     let gltf = run("gltf", "3,2,1");
-    assert!(gltf.errors.starts_with("red is paint.csv 650 nm, green "), "{}", gltf.errors);
+    assert!(
+        gltf.errors.starts_with("red is paint.csv 650 nm, green "),
+        "{}",
+        gltf.errors
+    );
     // Without an index the longest wavelength is red.
     let unordered = program::brdfit(&["export", "-", "--to", "gltf"], &results([BLUE, GREEN, RED]));
     assert_eq!((unordered.code, &unordered.output), (0, &gltf.output));

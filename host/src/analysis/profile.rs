@@ -13,59 +13,10 @@ mod intervals;
 use calibrate::LEVELS;
 use hold::{Held, Point};
 use intervals::referred;
+pub use intervals::{End, Interval, Profile};
 
 /// Each step away from the best value is longer than the last by this factor.
 const GROWTH: f64 = 1.25;
-
-/// An end of an interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
-    /// The value there, dimensionless.
-    pub value: f64,
-    /// It is the bound of the parameter: the data do not end the interval.
-    pub at_bound: bool,
-}
-
-/// The values that the data do not refute at a level; where some between them are refuted too, the hull.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
-    /// Confidence, 0 to 1.
-    pub level: f64,
-    /// Least value.
-    pub low: End,
-    /// Largest value.
-    pub high: End,
-}
-
-/// The profile of one parameter.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Profile {
-    /// Place of the parameter among those of the model.
-    pub index: usize,
-    /// Its name.
-    pub name: &'static str,
-    /// The least cost of all points.
-    pub best: Point,
-    /// In order of value.
-    pub points: Vec<Point>,
-    /// Samples less parameters inside their bounds.
-    pub degrees_of_freedom: usize,
-    /// The rises that end the intervals: those of the F test, with the correlation of the residuals.
-    pub limits: [f64; 2],
-    /// At [`LEVELS`].
-    pub intervals: [Interval; 2],
-}
-
-impl Profile {
-    /// Rise of the cost of a point above the best, over the variance of a residual; dimensionless.
-    pub fn rise(&self, point: &Point) -> f64 {
-        if point.cost == self.best.cost {
-            return 0.0;
-        }
-        (point.cost - self.best.cost) / self.best.cost * self.degrees_of_freedom as f64
-    }
-}
 
 /// Profiles of several parameters, all of the best fit that any of them meets.
 #[derive(Clone, Debug, PartialEq)]

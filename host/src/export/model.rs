@@ -53,7 +53,10 @@ impl Model {
             one => std::slice::from_ref(one),
         };
         if index.is_empty() {
-            let mut models = results.iter().map(Model::of_result).collect::<Result<Vec<_>, Error>>()?;
+            let mut models = results
+                .iter()
+                .map(Model::of_result)
+                .collect::<Result<Vec<_>, Error>>()?;
             if models.iter().all(|model| model.wavelength.is_some()) {
                 models.sort_by(|a, b| b.wavelength.partial_cmp(&a.wavelength).unwrap_or(Ordering::Equal));
             }

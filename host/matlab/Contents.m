@@ -2,6 +2,7 @@
 %
 %   brdfit_fit            - the parameters at the global optimum, their minima, their standard errors, and the residuals
 %   brdfit_brdf           - the BRDF of a model at any angles
+%   brdfit_program        - commands of the program: every model, terms by the scan, priors, robust fits, profiles
 %   brdfit_build          - compiles the MEX from its static library
 %
 %   test_brdfit           - tests

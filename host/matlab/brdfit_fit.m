@@ -48,7 +48,9 @@ function [x, resnorm, residual, exitflag, output] = brdfit_fit(theta_i, theta_s,
 %   Errors: brdfit:badInput, brdfit:sizeMismatch, brdfit:badOption, brdfit:badModel, brdfit:badTerms, brdfit:badBounds,
 %   brdfit:notFinite, brdfit:beyondHorizon, brdfit:notPositive, brdfit:tooFewSamples, brdfit:noFit.
 %
-%   See also brdfit_brdf, lsqcurvefit.
+%   brdfit_program has the other models and options of the program.
+%
+%   See also brdfit_brdf, brdfit_program, lsqcurvefit.
 
     if nargin < 3 || nargin > 4
         error('brdfit:badInput', 'brdfit_fit: takes theta_i, theta_s, brdf and, if need be, options');

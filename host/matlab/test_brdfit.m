@@ -106,6 +106,17 @@ function test_brdfit(expected, expected_ggx, expected_sigma, with_sigma)
     others = [1:6, 8:numel(f)];
     without = brdfit_fit(ti(others), ts(others), f(others), struct('sigma', sigma(others)));
     close_to(brdfit_fit(ti, ts, spoilt, struct('sigma', sigma))(1), without(1), 1e-6);
+    % The program itself; jsondecode may round the last digit.
+    names = {'rho_d', 'rho_s', 'rho_v', 'm', 'n', 'kappa'};
+    values = @(result) cellfun(@(name) result.parameters.(name), names);
+    whole = brdfit_program('fit', ti, ts, f);
+    assert(max(abs(values(whole) - x) ./ max(x, 1e-300)) < 1e-14 && strcmp(whole.model, 'beckmann') && isfield(whole, 'derived'));
+    weighted = brdfit_program('fit', ti, ts, f, struct('sigma', 0.1 * f + 0.001, 'delta_phi', 180));
+    close_to(values(weighted)(1), brdfit_fit(ti, ts, f, struct('sigma', 0.1 * f + 0.001))(1), 1e-14);
+    other = brdfit_program('fit', ti, ts, f, struct('model', 'ggx-smith', 'robust', true, 'prior', {{'n=3+-1', 'm=0.1+-1'}}, 'seed', 3, 'fit_offset', false));
+    assert(strcmp(other.model, 'ggx-smith') && isfield(other.uncertainty, 'undetermined'));
+    chosen = brdfit_program('fit', ti, ts, f, struct('terms', 'auto', 'method', 'paper', 'starts', 20));
+    assert(isfield(chosen, 'selection') && numel(brdfit_program('compare', ti, ts, f, struct('models', 'abg,ggx')).models) == 2);
     % Out of plane.
     [a, b] = deal(brdfit_brdf(30, 40, x, 180), brdfit_brdf(30, -40, x, 0));
     close_to(a, b, 1e-12);
@@ -134,6 +145,12 @@ function test_brdfit(expected, expected_ggx, expected_sigma, with_sigma)
     fails('brdfit:tooFewSamples', @() brdfit_fit(ti(1:5), ts(1:5), f(1:5)));
     fails('brdfit:badParameters', @() brdfit_brdf(45, 45, [0 0 0 1 0 0]));
     fails('brdfit:badParameters', @() brdfit_brdf(45, 45, [0 0 0]));
+    fails('brdfit:program', @() brdfit_program('fit', ti, ts, f, struct('model', 'phong')), 'there is no model ''phong''');
+    fails('brdfit:program', @() brdfit_program('fit', ti, ts, -f), 'no logarithm');
+    fails('brdfit:badInput', @() brdfit_program('batch', ti, ts, f));
+    fails('brdfit:badOption', @() brdfit_program('fit', ti, ts, f, struct('robust', {{1}})));
+    fails('brdfit:badOption', @() brdfit_program('fit', ti, ts, f, struct('output', sprintf('a\nb'))));
+    fails('brdfit:sizeMismatch', @() brdfit_program('fit', ti, ts(2:end), f));
     disp('test_brdfit: all passed');
 end
 

@@ -1,8 +1,10 @@
 /*
- * The MEX behind brdfit_fit.m and brdfit_brdf.m, which check the form of what they give to it:
+ * The MEX behind brdfit_fit.m, brdfit_brdf.m and brdfit_program.m, which check the form of what they give to it:
  *
  *   [x, cost, stop, passes, minima, fitted, unit, known] = brdfit_mex ("fit", samples, settings, lb, ub)
  *   f = brdfit_mex ("brdf", directions, x, model)
+ *
+ *   [wrong, text] = brdfit_mex ("program", words, table)
  *
  * samples is 5 x n: theta_i, theta_s and delta_phi in radians, brdf in sr^-1, 1. settings is [seed, terms, candidates,
  * max_passes, cost_tolerance, step_tolerance, model, sigma], where NaN stands for the usual value and sigma is 1 if the
@@ -11,7 +13,8 @@
  * of ln brdf that a weight of 1 stands for, 1 without sigma; known 1 x 49: standard errors, correlations, the coverage factor of 95 %, the
  * effective degrees of freedom, the angle over which residuals are correlated in degrees or NaN, the least and the
  * largest factor of that on errors; scale, condition. directions is 3 x n.
- * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX.
+ * model is BRDFIT_MODEL_BECKMANN or BRDFIT_MODEL_GGX. words have line breaks between; text is what the program prints, or
+ * says if something is wrong.
  */
 #include <stdint.h>
 #include <string.h>
@@ -33,6 +36,9 @@ double brdfit_matlab_weighted(double *samples, size_t count, const asked_of_sear
                               const double *upper);
 int32_t brdfit_matlab_known(const double *samples, size_t count, const asked_of_search *asked, const double *lower,
                             const double *upper, const double *x, double *to);
+
+int32_t brdfit_matlab_program(const char *words, const char *table, char **answer);
+void brdfit_matlab_forget(char *answer);
 
 /* What the program calls brdfit:... */
 static const char *identifier(brdfit_error error) {
@@ -196,6 +202,19 @@ static void brdf(mxArray *output[], const mxArray *input[]) {
     }
 }
 
+static void program(mxArray *output[], const mxArray *input[]) {
+    char *words = mxArrayToString(input[1]), *table = mxArrayToString(input[2]), *answer = NULL;
+    if (!words || !table)
+        mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex: words and table must be text");
+    if (!mexIsLocked())
+        mexLock();
+    output[0] = scalar(brdfit_matlab_program(words, table, &answer));
+    output[1] = mxCreateString(answer);
+    brdfit_matlab_forget(answer);
+    mxFree(words);
+    mxFree(table);
+}
+
 void mexFunction(int outputs, mxArray *output[], int inputs, const mxArray *input[]) {
     char name[8] = "";
     if (inputs > 0 && mxIsChar(input[0]))
@@ -204,6 +223,8 @@ void mexFunction(int outputs, mxArray *output[], int inputs, const mxArray *inpu
         fit(outputs, output, input);
     else if (!strcmp(name, "brdf") && inputs == 4)
         brdf(output, input);
+    else if (!strcmp(name, "program") && inputs == 3 && outputs == 2)
+        program(output, input);
     else
-        mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex is for brdfit_fit and brdfit_brdf");
+        mexErrMsgIdAndTxt("brdfit:internal", "brdfit_mex is for brdfit_fit, brdfit_brdf and brdfit_program");
 }

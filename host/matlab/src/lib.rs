@@ -1,4 +1,6 @@
-//! What the MEX links: the functions of the C interface, and two of the program's library: for weights by standard deviations, and for errors that account for residuals which are alike along the angle.
+//! What the MEX links: the functions of the C interface, and of the program's library the program itself, weights by standard deviations, and errors that account for residuals which are alike along the angle.
+
+mod program;
 
 // For its C functions.
 use brdfit_capi as _;

@@ -220,7 +220,13 @@ def test_one_material_of_three_scans(tmp_path):
     )
     (tmp_path / "two.csv").write_text("theta_i_deg,theta_s_deg,wavelength_nm,brdf_per_sr\n" + table)
     two = [brdfit.fit(one) for one in brdfit.read(tmp_path / "two.csv")]
-    assert len(brdfit.export(two, "rgl")) > 1.2 * len(brdfit.export(two[0], "rgl"))
+    tensors = brdfit.export(two, "rgl")
+    bare = [brdfit.fit(one.scan.theta_i, one.scan.theta_s, one.scan.brdf) for one in two]
+    assert len(tensors) > 1.2 * len(brdfit.export(two[0], "rgl"))
+    named = brdfit.export(bare, "rgl", wavelength=[450, 550])
+    assert all(np.float32([450, 550]).tobytes() in both for both in (tensors, named))
+    with pytest.raises(ValueError, match="^wavelength has 3 numbers for 2 fits; give one for each$"):
+        brdfit.export(bare, "rgl", wavelength=[450, 550, 650])
     with pytest.raises(TypeError, match=r"^export\(\) takes a Fit, or several in a list$"):
         brdfit.export(["a"], "c")
 

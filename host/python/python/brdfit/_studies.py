@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _brdfit, _options
+from ._arrays import in_unit, numbers
 from ._brdfit import Scan
 from ._command import exported, run, write
 from ._fit import proof, told
@@ -319,10 +320,10 @@ def export(
 
     Parameters
     ----------
-    fit : the fit; or several of one material: red, green and blue, or for rgl those at several wavelengths, which the names of their scans say, such as "550 nm".
+    fit : the fit; or several of one material: red, green and blue, or for rgl those at several wavelengths, which the names of their scans say, such as "550 nm", or `wavelength`.
     to : zemax, zemax-abg, fred, glsl, mitsuba, mitsuba-native, c, rust, bird, openmaterial, ...
     path : where it is written too, if given.
-    options : others of `brdfit export --help`, such as wavelength in nm or name.
+    options : others of `brdfit export --help`, such as name, or wavelength in nm: one, or one for each fit.
 
     Raises
     ------
@@ -331,4 +332,13 @@ def export(
     fits = [fit] if isinstance(fit, Fit) else list(fit)
     if not fits or not all(isinstance(one, Fit) for one in fits):
         raise TypeError("export() takes a Fit, or several in a list")
-    return exported(fits[0].json if len(fits) == 1 else f"[{','.join(one.json for one in fits)}]", to, path, **options)
+    texts = [one.json for one in fits]
+    lengths = in_unit("wavelength", options.get("wavelength"), "nanometer")
+    if np.ndim(lengths) == 1:
+        if len(lengths) != len(fits):
+            raise ValueError(f"wavelength has {len(lengths)} numbers for {len(fits)} fits; give one for each")
+        # A form of several wavelengths finds them in the names of the scans.
+        named = zip(fits, numbers("wavelength", lengths).tolist())
+        texts = [json.dumps({**one.details, "scan": f"{length!r} nm"}) for one, length in named]
+        del options["wavelength"]
+    return exported(texts[0] if len(texts) == 1 else f"[{','.join(texts)}]", to, path, **options)

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use brdfit::engine::blocks;
 use brdfit_core::brdf::ALL;
 use brdfit_core::geometry::{Block, LANES};
+use brdfit_core::list::Lent;
 use brdfit_core::lm::{Bounds, Fit, Linearization, Options, Problem};
 use brdfit_core::minima::Minimum;
 use brdfit_core::real::Real;
@@ -246,7 +247,7 @@ fn memory_of_a_length_known_at_run_time_changes_nothing() {
         // Memory of two searches.
         let mut places = [0, 1].map(|_| (vec![Minimum::EMPTY; 2], vec![Trial::EMPTY; FITS]));
         let [(minima, fits), (other_minima, other_fits)] = &mut places;
-        let mut search = SearchIn::over(minima.as_mut_slice(), fits.as_mut_slice());
+        let mut search = SearchIn::over(Lent::new(minima), Lent::new(fits));
         search.begin(&bounds, k, CANDIDATES, &options);
         for _ in 0..150 {
             search.step(&scan);
@@ -256,7 +257,7 @@ fn memory_of_a_length_known_at_run_time_changes_nothing() {
         saved::save(&mut search, &mut bytes).unwrap();
         let mut arrays = Search::<f64, P, 2>::new();
         saved::restore(&mut arrays, &bytes).unwrap();
-        let mut slices = SearchIn::over(other_minima.as_mut_slice(), other_fits.as_mut_slice());
+        let mut slices = SearchIn::over(Lent::new(other_minima), Lent::new(other_fits));
         saved::restore(&mut slices, &bytes).unwrap();
         while search.step(&scan) {}
         while arrays.step(&scan) {}
@@ -277,7 +278,8 @@ fn memory_of_a_length_known_at_run_time_changes_nothing() {
     }
     // Room for no fit: it ends, without a best.
     let blocks = blocks::<f64>(&scene(0)).unwrap();
-    let mut search = SearchIn::over([Minimum::EMPTY; 1], [Trial::EMPTY; 0]);
+    let mut minima = [Minimum::EMPTY; 1];
+    let mut search = SearchIn::over(Lent::new(&mut minima), Lent::new(&mut []));
     search.begin(&bounds, 0, 30, &options);
     while search.step(&Scan::<f64, ALL, P>::new(&blocks)) {}
     assert!(search.best().is_none());

@@ -15,7 +15,7 @@
 //! | pieces of microfacet models | [`lobes::Distribution`], [`lobes::Masking`] | `lobes.rs` | Eq. 5, 8, 9 |
 //! | ln f and its gradient | [`brdf::Params`], [`brdf::Brdf`] | `brdf.rs` | Eq. 3-8, 11, 14 |
 //! | microfacet models | [`microfacet::Microfacet`] | `microfacet.rs`, `bend.rs` | Eq. 5, 14 |
-//! | lists of a fixed capacity | [`list::Memory`] | `list.rs` | |
+//! | lists of a fixed capacity | [`list::List`], [`list::Lent`] | `list.rs` | |
 //! | step within bounds | | `boxqp.rs` | |
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
 //! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |

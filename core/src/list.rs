@@ -1,107 +1,104 @@
-//! Lists of a fixed capacity, in an array or in memory of the caller.
+//! Lists of a fixed capacity: those of `heapless`, which hold their items themselves, and those in memory of the caller.
 
 use core::ops::{Deref, DerefMut};
 
-/// Memory of a list: an array, or a slice that the caller lends.
-///
-/// Its items are always values, so no list needs `unsafe`; those beyond the list's end mean nothing.
-pub trait Memory {
-    /// What the list holds.
+use heapless::{Vec, VecView};
+
+/// A list that cannot grow beyond its capacity.
+pub trait List: DerefMut<Target = [Self::Item]> {
+    /// What it holds.
     type Item: Copy;
-    /// All of it; always the same number of items.
-    fn items(&self) -> &[Self::Item];
-    /// The same, to be changed.
-    fn items_mut(&mut self) -> &mut [Self::Item];
-}
-
-impl<T: Copy, const N: usize> Memory for [T; N] {
-    type Item = T;
-    fn items(&self) -> &[T] {
-        self
-    }
-    fn items_mut(&mut self) -> &mut [T] {
-        self
-    }
-}
-
-impl<T: Copy> Memory for &mut [T] {
-    type Item = T;
-    fn items(&self) -> &[T] {
-        self
-    }
-    fn items_mut(&mut self) -> &mut [T] {
-        self
-    }
-}
-
-/// At most as many items as its memory holds.
-#[derive(Clone, Debug)]
-pub(crate) struct List<S> {
-    len: usize,
-    memory: S,
-}
-
-impl<S: Memory> List<S> {
-    /// An empty list.
-    pub const fn new(memory: S) -> Self {
-        List { len: 0, memory }
-    }
-
     /// How many items it can hold.
-    pub fn capacity(&self) -> usize {
-        self.memory.items().len()
-    }
-
-    /// Its memory, and how many items of it are the list.
-    pub fn parts(&mut self) -> (&mut [S::Item], &mut usize) {
-        (self.memory.items_mut(), &mut self.len)
-    }
-
-    /// Goes on in other memory, which has the same items.
-    pub fn moved(&mut self, memory: S) {
-        self.memory = memory;
-    }
-
-    pub fn clear(&mut self) {
-        self.len = 0;
-    }
-
-    /// Leaves the last item out.
-    pub fn shorten(&mut self) {
-        self.len = self.len.saturating_sub(1);
-    }
-
-    /// Makes it so long; what it held before there is of no meaning. False if there is no room.
-    pub fn set_len(&mut self, len: usize) -> bool {
-        let fits = len <= self.capacity();
-        if fits {
-            self.len = len;
-        }
-        fits
-    }
-
+    fn capacity(&self) -> usize;
+    /// Makes it shorter, or longer by such items. False, and nothing is changed, if there is no room.
+    fn resize(&mut self, len: usize, with: Self::Item) -> bool;
     /// Adds an item, if there is room.
-    pub fn push(&mut self, item: S::Item) {
-        let (items, len) = self.parts();
-        if let Some(place) = items.get_mut(*len) {
-            *place = item;
-            *len += 1;
+    fn push(&mut self, item: &Self::Item);
+    /// Leaves out what is beyond this length.
+    fn truncate(&mut self, len: usize);
+}
+
+impl<T: Copy> List for VecView<T> {
+    type Item = T;
+    fn capacity(&self) -> usize {
+        VecView::capacity(self)
+    }
+    fn resize(&mut self, len: usize, with: T) -> bool {
+        VecView::resize(self, len, with).is_ok()
+    }
+    fn push(&mut self, item: &T) {
+        let _ = VecView::push(self, *item);
+    }
+    fn truncate(&mut self, len: usize) {
+        VecView::truncate(self, len);
+    }
+}
+
+impl<T: Copy, const N: usize> List for Vec<T, N> {
+    type Item = T;
+    fn capacity(&self) -> usize {
+        N
+    }
+    fn resize(&mut self, len: usize, with: T) -> bool {
+        List::resize(self.as_mut_view(), len, with)
+    }
+    fn push(&mut self, item: &T) {
+        List::push(self.as_mut_view(), item);
+    }
+    fn truncate(&mut self, len: usize) {
+        self.as_mut_view().truncate(len);
+    }
+}
+
+/// A list in a slice that the caller lends, of a length that is known when the program runs.
+#[derive(Debug)]
+pub struct Lent<'a, T> {
+    /// The memory; what lies beyond the list's end means nothing.
+    pub memory: &'a mut [T],
+    /// How many of them are the list.
+    pub len: usize,
+}
+
+impl<'a, T> Lent<'a, T> {
+    /// An empty list.
+    pub const fn new(memory: &'a mut [T]) -> Self {
+        Lent { memory, len: 0 }
+    }
+}
+
+impl<T> Deref for Lent<'_, T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        self.memory.get(..self.len).unwrap_or_default()
+    }
+}
+
+impl<T> DerefMut for Lent<'_, T> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        self.memory.get_mut(..self.len).unwrap_or_default()
+    }
+}
+
+impl<T: Copy> List for Lent<'_, T> {
+    type Item = T;
+    fn capacity(&self) -> usize {
+        self.memory.len()
+    }
+    fn resize(&mut self, len: usize, with: T) -> bool {
+        let Some(list) = self.memory.get_mut(..len) else {
+            return false;
+        };
+        list.iter_mut().skip(self.len).for_each(|item| *item = with);
+        self.len = len;
+        true
+    }
+    fn push(&mut self, item: &T) {
+        if let Some(place) = self.memory.get_mut(self.len) {
+            *place = *item;
+            self.len += 1;
         }
     }
-}
-
-impl<S: Memory> Deref for List<S> {
-    type Target = [S::Item];
-    fn deref(&self) -> &[S::Item] {
-        let items = self.memory.items();
-        &items[..self.len.min(items.len())]
-    }
-}
-
-impl<S: Memory> DerefMut for List<S> {
-    fn deref_mut(&mut self) -> &mut [S::Item] {
-        let items = self.memory.items_mut();
-        let len = self.len.min(items.len());
-        &mut items[..len]
+    fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
     }
 }

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use crate::list::{List, Memory};
+use crate::list::List;
 use crate::lm::Fit;
 use crate::real::Real;
 use crate::saved::Tape;
@@ -26,12 +26,12 @@ pub struct Minimum<R, const P: usize> {
     pub first_start: u64,
 }
 
-/// As many distinct minima as its memory holds, in order of cost; where there are more, the worst are left out.
+/// As many distinct minima as its list holds, in order of cost; where there are more, the worst are left out.
 ///
 /// Two fits are distinct if their costs differ by at least 1 % and a parameter differs by more than 1e-3 of itself.
 #[derive(Clone, Debug)]
-pub struct Minima<R, const P: usize, S = [Minimum<R, P>; MINIMA]> {
-    list: List<S>,
+pub struct Minima<R, const P: usize, S = heapless::Vec<Minimum<R, P>, MINIMA>> {
+    list: S,
     of: PhantomData<R>,
 }
 
@@ -52,23 +52,20 @@ impl<R: Real, const P: usize> Minimum<R, P> {
     }
 }
 
-impl<R: Real, const P: usize, const M: usize> Default for Minima<R, P, [Minimum<R, P>; M]> {
+impl<R: Real, const P: usize, const M: usize> Default for Minima<R, P, heapless::Vec<Minimum<R, P>, M>> {
     fn default() -> Self {
-        Self::over([Minimum::EMPTY; M])
+        Self::over(heapless::Vec::new())
     }
 }
 
-impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Minima<R, P, S> {
-    /// An empty table.
-    pub const fn over(memory: S) -> Self {
-        Minima {
-            list: List::new(memory),
-            of: PhantomData,
-        }
+impl<R: Real, const P: usize, S: List<Item = Minimum<R, P>>> Minima<R, P, S> {
+    /// A table in an empty list.
+    pub const fn over(list: S) -> Self {
+        Minima { list, of: PhantomData }
     }
 
     pub(crate) fn fields(&mut self, tape: &mut Tape<'_>) {
-        tape.list(&mut self.list, |tape, minimum| minimum.fields(tape));
+        tape.list(&mut self.list, Minimum::EMPTY, |tape, minimum| minimum.fields(tape));
     }
 
     /// How many it can hold.
@@ -76,13 +73,14 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Minima<R, P, S> {
         self.list.capacity()
     }
 
-    pub(crate) fn moved(&mut self, memory: S) {
-        self.list.moved(memory);
+    /// Its list.
+    pub(crate) fn list_mut(&mut self) -> &mut S {
+        &mut self.list
     }
 
     /// Forgets all.
     pub(crate) fn clear(&mut self) {
-        self.list.clear();
+        self.list.truncate(0);
     }
 
     /// Best first.
@@ -119,7 +117,7 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Minima<R, P, S> {
             if old.cost <= new.cost {
                 (new.x, new.cost) = (old.x, old.cost);
             }
-            self.list.shorten();
+            self.list.truncate(self.list.len() - 1);
         }
         insert(&mut self.list, &new);
     }
@@ -134,7 +132,7 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Minima<R, P, S> {
 }
 
 #[cfg(feature = "defmt")]
-impl<R: Real + defmt::Format, const P: usize, S: Memory<Item = Minimum<R, P>>> defmt::Format for Minima<R, P, S> {
+impl<R: Real + defmt::Format, const P: usize, S: List<Item = Minimum<R, P>>> defmt::Format for Minima<R, P, S> {
     fn format(&self, to: defmt::Formatter<'_>) {
         defmt::write!(to, "{=[?]}", self.as_slice());
     }
@@ -169,22 +167,24 @@ pub(crate) fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place:
 }
 
 /// Puts `new` into its place in a list in order of cost; where there is no room, the last is left out.
-pub(crate) fn insert<R: Real, const P: usize>(list: &mut List<impl Memory<Item = Minimum<R, P>>>, new: &Minimum<R, P>) {
-    let (memory, len) = list.parts();
-    insert_into(memory, len, new);
+pub(crate) fn insert<R: Real, const P: usize>(
+    list: &mut (impl List<Item = Minimum<R, P>> + ?Sized),
+    new: &Minimum<R, P>,
+) {
+    let full = list.len() == list.capacity();
+    if !full {
+        list.push(new);
+    }
+    place_last(list, new, full);
 }
 
-/// The same of a list's memory, of which the first `len` are the list.
+/// Puts `new` in the place of the last item, if that is worse or does not count, and then into its own.
 #[cfg_attr(target_os = "none", inline(never))]
-fn insert_into<R: Real, const P: usize>(memory: &mut [Minimum<R, P>], len: &mut usize, new: &Minimum<R, P>) {
-    let longer = memory.len().min(*len + 1);
-    let has_room = longer > *len;
-    let list = memory.get_mut(..longer).unwrap_or_default();
+fn place_last<R: Real, const P: usize>(list: &mut [Minimum<R, P>], new: &Minimum<R, P>, counts: bool) {
     if let Some(last) = list.last_mut()
-        && (has_room || less(new.cost, last.cost))
+        && (!counts || less(new.cost, last.cost))
     {
         *last = *new;
-        *len = longer;
         sift(list);
     }
 }

@@ -32,7 +32,7 @@
 //! ```
 
 use crate::geometry::Block;
-use crate::list::{List, Memory};
+use crate::list::List;
 use crate::real::Real;
 
 /// Bytes before the fields.
@@ -142,11 +142,16 @@ impl Tape<'_> {
         self.one_of(value, &[false, true]);
     }
 
-    /// A list, of which each item is written or read, whole, by a function.
-    pub(crate) fn list<S: Memory>(&mut self, list: &mut List<S>, mut item: impl FnMut(&mut Self, &mut S::Item)) {
+    /// A list, of which each item is written or read, whole, by a function; new ones are `empty` first.
+    pub(crate) fn list<S: List + ?Sized>(
+        &mut self,
+        list: &mut S,
+        empty: S::Item,
+        mut item: impl FnMut(&mut Self, &mut S::Item),
+    ) {
         let mut count = list.len() as u32;
         self.u32(&mut count);
-        if !list.set_len(count as usize) {
+        if !list.resize(count as usize, empty) {
             self.failed = true;
         }
         for value in list.iter_mut() {

@@ -1,10 +1,11 @@
 //! A search in steps, and what a finished fit knows.
 
 use core::mem::MaybeUninit;
+use core::ops::{Deref, DerefMut};
 
 use brdfit_core::brdf::{ALL, has, parameters, slot};
 use brdfit_core::geometry::Block;
-use brdfit_core::list::Memory;
+use brdfit_core::list::List;
 use brdfit_core::lm::Problem;
 use brdfit_core::lobes::Distribution;
 use brdfit_core::minima::Minimum;
@@ -21,31 +22,61 @@ use crate::options::{bounds, lm_options, options_at};
 use crate::scan::blocks_of;
 use crate::types::*;
 
-/// Items in memory of the caller, whose place is told anew in each call, for it may be copied in between.
+/// A list in memory of the caller, whose place is told anew in each call, for it may be copied in between.
 pub struct Behind<T> {
     first: *mut T,
-    count: usize,
+    capacity: usize,
+    len: usize,
 }
 
 impl<T> Behind<T> {
     /// For a search that is moved before anything else.
     const fn nowhere() -> Self {
         Behind {
-            first: core::ptr::null_mut(),
-            count: 0,
+            first: core::ptr::NonNull::dangling().as_ptr(),
+            capacity: 0,
+            len: 0,
         }
     }
 }
 
-impl<T: Copy> Memory for Behind<T> {
-    type Item = T;
-    fn items(&self) -> &[T] {
-        // SAFETY: `search_of` and `begin_of` alone make them, and they give what they give for the time of their caller's call.
-        unsafe { core::slice::from_raw_parts(self.first, self.count) }
+impl<T> Deref for Behind<T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        // SAFETY: `search_of` and `begin_of` alone tell places, where they have written an item for all of the capacity, for the time of their caller's call.
+        unsafe { core::slice::from_raw_parts(self.first, self.len) }
     }
-    fn items_mut(&mut self) -> &mut [T] {
+}
+
+impl<T> DerefMut for Behind<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
         // SAFETY: as above; a search has each of its two once.
-        unsafe { core::slice::from_raw_parts_mut(self.first, self.count) }
+        unsafe { core::slice::from_raw_parts_mut(self.first, self.len) }
+    }
+}
+
+impl<T: Copy> List for Behind<T> {
+    type Item = T;
+    fn capacity(&self) -> usize {
+        self.capacity
+    }
+    fn resize(&mut self, len: usize, with: T) -> bool {
+        if len > self.capacity {
+            return false;
+        }
+        let before = core::mem::replace(&mut self.len, len);
+        self.iter_mut().skip(before).for_each(|item| *item = with);
+        true
+    }
+    fn push(&mut self, item: &T) {
+        if self.len < self.capacity {
+            // SAFETY: as above; there is room.
+            unsafe { self.first.add(self.len).write(*item) };
+            self.len += 1;
+        }
+    }
+    fn truncate(&mut self, len: usize) {
+        self.len = self.len.min(len);
     }
 }
 
@@ -84,11 +115,7 @@ fn units(minima: u32, fits: u32) -> Result<usize, brdfit_error> {
 ///
 /// # Safety
 /// `state` points to the memory of a search with so many.
-unsafe fn behind<R: Real, const P: usize>(
-    state: *mut State<R>,
-    minima: u32,
-    fits: u32,
-) -> (Behind<Minimum<R, P>>, Behind<Trial<R, P>>) {
+unsafe fn behind<R: Real, const P: usize>(state: *mut State<R>, minima: u32) -> (*mut Minimum<R, P>, *mut Trial<R, P>) {
     const {
         assert!(align_of::<Minimum<R, P>>() <= align_of::<State<R>>());
         assert!(size_of::<Minimum<R, P>>().is_multiple_of(align_of::<Trial<R, P>>()));
@@ -96,22 +123,11 @@ unsafe fn behind<R: Real, const P: usize>(
         assert!(size_of::<Trial<R, P>>() <= BRDFIT_SEARCH_FIT * size_of::<brdfit_search_state<R>>());
         assert!(size_of::<Search<R, P>>() <= size_of::<Search<R, { parameters(ALL) }>>());
     }
-    let (minima, fits) = (minima as usize, fits as usize);
     // SAFETY: all of it is within that memory, as the sizes above say.
-    let (first_minimum, first_fit) = unsafe {
+    unsafe {
         let first = state.add(1).cast::<Minimum<R, P>>();
-        (first, first.add(minima).cast::<Trial<R, P>>())
-    };
-    (
-        Behind {
-            first: first_minimum,
-            count: minima,
-        },
-        Behind {
-            first: first_fit,
-            count: fits,
-        },
-    )
+        (first, first.add(minima as usize).cast::<Trial<R, P>>())
+    }
 }
 
 /// The search that was begun, in this place.
@@ -121,9 +137,10 @@ unsafe fn behind<R: Real, const P: usize>(
 unsafe fn search_of<'a, R: Real, const P: usize>(state: *mut State<R>) -> &'a mut Search<R, P> {
     // SAFETY: `begin_of` wrote one of this P there.
     unsafe {
-        let (minima, fits) = behind::<R, P>(state, (*state).minima, (*state).fits);
+        let (first_minimum, first_fit) = behind::<R, P>(state, (*state).minima);
         let search = &mut *(&raw mut (*state).search).cast::<Search<R, P>>();
-        search.moved(minima, fits);
+        let (minima, fits) = search.lists_mut();
+        (minima.first, fits.first) = (first_minimum, first_fit);
         search
     }
 }
@@ -188,12 +205,12 @@ fn begin_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
             options: *options,
             search: MaybeUninit::uninit(),
         });
-        let (minima, fits) = behind::<R, P>(state, minima, fits);
-        for place in 0..minima.count {
-            minima.first.add(place).write(Minimum::EMPTY);
+        let (first_minimum, first_fit) = behind::<R, P>(state, minima);
+        for place in 0..minima as usize {
+            first_minimum.add(place).write(Minimum::EMPTY);
         }
-        for place in 0..fits.count {
-            fits.first.add(place).write(Trial::EMPTY);
+        for place in 0..fits as usize {
+            first_fit.add(place).write(Trial::EMPTY);
         }
         let place = (&raw mut (*state).search).cast::<Search<R, P>>();
         // Made when it is compiled, it is zeros to be written; made here, it would lie on the stack first.
@@ -203,8 +220,11 @@ fn begin_of<R: Real, D: Distribution, const TERMS: u8, const P: usize>(
                 SearchIn::over(minima, fits)
             },
         );
-        (*place).moved(minima, fits);
-        &mut *place
+        let search = &mut *place;
+        let lists = search.lists_mut();
+        (lists.0.first, lists.0.capacity) = (first_minimum, minima as usize);
+        (lists.1.first, lists.1.capacity) = (first_fit, fits as usize);
+        search
     };
     let bounds = bounds::<R, TERMS, P>(options);
     search.begin(&bounds, options.seed, options.candidates, &lm_options(options));

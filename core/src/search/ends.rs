@@ -1,7 +1,9 @@
 //! What a search has found so far, and what that says of what is to be done.
 
+use heapless::Vec;
+
 use super::Scene;
-use crate::list::{List, Memory};
+use crate::list::List;
 use crate::lm::Fit;
 use crate::minima::{self, Minima, Minimum};
 use crate::real::Real;
@@ -41,15 +43,15 @@ pub(super) struct Ends<R, const P: usize, S> {
     /// The best short fit with other slopes than the best end.
     pub rival: Option<([R; P], R)>,
     /// Where fits have ended, best first; unlike a distinct minimum, one for each cost. `hits` are the rounds in which a fit ended there, and `first_start` is the last of them.
-    pub list: List<[Minimum<R, P>; ENDS]>,
+    pub list: Vec<Minimum<R, P>, ENDS>,
     pub minima: Minima<R, P, S>,
 }
 
-impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Ends<R, P, S> {
+impl<R: Real, const P: usize, S: List<Item = Minimum<R, P>>> Ends<R, P, S> {
     pub const fn over(minima: S) -> Self {
         Ends {
             best: Fit::nowhere(),
-            list: List::new([Minimum::EMPTY; ENDS]),
+            list: Vec::new(),
             poorest: R::ZERO,
             rival: None,
             minima: Minima::over(minima),
@@ -59,7 +61,7 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Ends<R, P, S> {
     /// Forgets all.
     pub fn clear(&mut self) {
         self.best.passes = 0;
-        self.list.clear();
+        self.list.truncate(0);
         self.poorest = R::ZERO;
         self.rival = None;
         self.minima.clear();
@@ -67,7 +69,7 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Ends<R, P, S> {
 
     pub fn fields(&mut self, tape: &mut Tape<'_>) {
         self.best.fields(tape);
-        tape.list(&mut self.list, |tape, end| end.fields(tape));
+        tape.list(self.list.as_mut_view(), Minimum::EMPTY, |tape, end| end.fields(tape));
         tape.reals(core::slice::from_mut(&mut self.poorest));
         let mut has_rival = self.rival.is_some();
         tape.flag(&mut has_rival);
@@ -177,7 +179,7 @@ impl<R: Real, const P: usize, S: Memory<Item = Minimum<R, P>>> Ends<R, P, S> {
             let hits = u32::from(round > 0);
             let first_start = round;
             minima::insert(
-                &mut self.list,
+                self.list.as_mut_view(),
                 &Minimum {
                     x,
                     cost,

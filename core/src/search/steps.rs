@@ -4,9 +4,11 @@ mod plan;
 mod round;
 mod saved;
 
+use heapless::Vec;
+
 use super::ends::{EXACT, Ends};
 use super::{Candidate, Evaluations, Found, MINIMA, Scene, Waits, log};
-use crate::list::{List, Memory};
+use crate::list::List;
 use crate::lm::{Bounds, Fit, Options, Stop};
 use crate::minima::{self, Minima, Minimum};
 use crate::real::Real;
@@ -97,7 +99,7 @@ enum Kind {
     Slopes,
 }
 
-/// A fit of a round: what the memory of a search holds of fits under way.
+/// A fit of a round: what the list of a search holds of fits under way.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<R, const P: usize> {
     fit: Fit<R, P>,
@@ -115,9 +117,9 @@ impl<R: Real, const P: usize> Trial<R, P> {
 
 /// A search of the default method under way, which remembers at most `M` minima and has at most `F` fits under way at a time; its state is within it.
 pub type Search<R, const P: usize, const M: usize = MINIMA, const F: usize = FITS> =
-    SearchIn<R, P, [Minimum<R, P>; M], [Trial<R, P>; F]>;
+    SearchIn<R, P, Vec<Minimum<R, P>, M>, Vec<Trial<R, P>, F>>;
 
-/// A search of the default method under way, which remembers as many minima as the memory `M` holds, and has as many fits under way as `F` holds: arrays ([`Search`]), or slices of lengths that are known when it runs ([`SearchIn::over`]).
+/// A search of the default method under way, which remembers as many minima as the list `M` holds, and has as many fits under way as `F` holds: lists of its own ([`Search`]), or in slices of lengths that are known when it runs ([`SearchIn::over`]).
 ///
 /// The state of a [`Search`] is plain data without references: it can lie in static memory, be copied, and be saved ([`crate::saved`]).
 /// Fewer minima change nothing but the table of them; with fewer than [`FITS`] fits, rounds follow fewer starts, and a minimum is missed more often.
@@ -181,9 +183,9 @@ pub struct SearchIn<R, const P: usize, M, F> {
     centre: ([R; P], R),
     candidate: Candidate<R, P>,
     /// Candidates, best first: `cost` is first their rank, and `first_start` which it is.
-    starts: List<[Minimum<R, P>; TRIED]>,
+    starts: Vec<Minimum<R, P>, TRIED>,
     ends: Ends<R, P, M>,
-    fits: List<F>,
+    fits: F,
 }
 
 impl<R: Real, const P: usize, const M: usize, const F: usize> Default for Search<R, P, M, F> {
@@ -198,15 +200,16 @@ impl<R: Real, const P: usize, const M: usize, const F: usize> Search<R, P, M, F>
         // Made when it is compiled: then zeros are what is left to be written.
         const {
             assert!(F > 0, "a search needs room for a fit");
-            Self::over([Minimum::EMPTY; M], [Trial::EMPTY; F])
+            Self::over(Vec::new(), Vec::new())
         }
     }
 }
 
-impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
-    /// A search that is not begun, over memory for its minima and for at least one fit: it has no best where there is room for none.
+impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
+    /// A search that is not begun, over empty lists for its minima and for at least one fit: it has no best where there is room for none.
     ///
     /// ```
+    /// use brdfit_core::list::Lent;
     /// use brdfit_core::minima::Minimum;
     /// use brdfit_core::search::{SearchIn, Trial};
     ///
@@ -214,7 +217,7 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
     /// let (minima, fits) = (5, 2);
     /// let mut minima = vec![Minimum::<f32, 6>::EMPTY; minima];
     /// let mut fits = vec![Trial::<f32, 6>::EMPTY; fits];
-    /// let search = SearchIn::over(minima.as_mut_slice(), fits.as_mut_slice());
+    /// let search = SearchIn::over(Lent::new(&mut minima), Lent::new(&mut fits));
     /// assert_eq!(search.minima().capacity(), 5);
     /// ```
     pub const fn over(minima: M, fits: F) -> Self {
@@ -255,8 +258,8 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
                 passes: 0,
                 waits: Waits::No,
             },
-            starts: List::new([Minimum::EMPTY; TRIED]),
-            fits: List::new(fits),
+            starts: Vec::new(),
+            fits,
             ends: Ends::over(minima),
         }
     }
@@ -271,15 +274,14 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         (self.round, self.made, self.known) = (0, 0, 0);
         self.evaluations = Evaluations::default();
         (self.bounds, self.options) = (*bounds, *options);
-        self.starts.clear();
-        self.fits.clear();
+        self.starts.truncate(0);
+        self.fits.truncate(0);
         self.ends.clear();
     }
 
-    /// Goes on over memory at another place, to which what was in the old one has been copied.
-    pub fn moved(&mut self, minima: M, fits: F) {
-        self.ends.minima.moved(minima);
-        self.fits.moved(fits);
+    /// The lists of minima and fits: for lists whose memory was copied to another place.
+    pub fn lists_mut(&mut self) -> (&mut M, &mut F) {
+        (self.ends.minima.list_mut(), &mut self.fits)
     }
 
     /// Takes a point that is known to be good, before the first round: the next steps are a fit from it. False if the fit of another is still under way, or rounds have begun.
@@ -287,10 +289,10 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         if (self.phase, self.task) != (Phase::Known, Task::Choose) {
             return false;
         }
-        self.starts.clear();
-        self.fits.clear();
+        self.starts.truncate(0);
+        self.fits.truncate(0);
         let index = u64::from(self.candidates) + u64::from(self.known);
-        self.starts.push(at(x, R::ZERO, index));
+        List::push(&mut self.starts, &at(x, R::ZERO, index));
         self.known += 1;
         (self.levelled, self.place, self.task) = (1, 0, Task::Begin);
         true
@@ -371,8 +373,8 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         // The gradient of an exact fit is rounding.
         let settles = best.stop.is_some_and(Stop::converged) && self.options.cost_tolerance <= R::EPSILON && !exact;
         self.until = if settles { best.passes + SETTLING } else { 0 };
-        self.fits.clear();
-        self.fits.push(Trial { fit: *best, start: 0 });
+        self.fits.truncate(0);
+        self.fits.push(&Trial { fit: *best, start: 0 });
         self.task = Task::Settle;
     }
 
@@ -387,7 +389,7 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
                 return;
             }
         }
-        self.fits.clear();
+        self.fits.truncate(0);
         self.ends.minima.refine(best);
         self.phase = Phase::Ended;
         log(best, self.ends.minima.as_slice().len(), self.evaluations);

@@ -1,7 +1,7 @@
 //! Which rounds a search makes, and when it has made enough.
 
 use super::{Kind, Phase, SearchIn, Task, Trial};
-use crate::list::Memory;
+use crate::list::List;
 use crate::lm::Bounds;
 use crate::minima::Minimum;
 use crate::propose::{GROUPS, INDICES};
@@ -33,7 +33,7 @@ const SLOPES: u32 = 16;
 /// Rounds with weights near their bounds, where the best is on an upper bound, or rounds did not settle a scan that the model does not follow well.
 const CORNERS: u32 = 3 * BANDS;
 
-impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
+impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
     /// Begins the next round, or ends the rounds.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn choose(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {

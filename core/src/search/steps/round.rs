@@ -1,21 +1,21 @@
 //! A round: candidates by rank, the best of them by cost, fits from the best of those, and which of these converge.
 
 use super::{BEGUN, GROUP_BEGUN, Kind, Phase, SHORT, SLOPES_BEGUN, SearchIn, Task, Trial, VARIATION_SHORT, at};
-use crate::list::Memory;
+use crate::list::List;
 use crate::lm::Fit;
 use crate::minima::{self, Minimum};
 use crate::real::Real;
 use crate::search::ends::{NEAR, QUIET};
 use crate::search::{Candidate, Region, Scene, Waits};
 
-impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
+impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Trial<R, P>>> SearchIn<R, P, M, F> {
     /// Begins one of these candidates.
     #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn begin_round(&mut self, first: u32, end: u32, kind: Kind) {
         self.round += 1;
         (self.next, self.end, self.kind) = (first, end, kind);
-        self.starts.clear();
-        self.fits.clear();
+        self.starts.truncate(0);
+        self.fits.truncate(0);
         self.elsewhere = false;
         self.task = Task::Propose;
     }
@@ -52,7 +52,7 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         // Narrow bounds make one of several.
         if self.starts.iter().all(|start| start.x != x) {
             let index = u64::from(self.next);
-            minima::insert(&mut self.starts, &at(x, rank, index));
+            minima::insert(self.starts.as_mut_view(), &at(x, rank, index));
         }
         self.next += 1;
         self.task = Task::Propose;
@@ -112,7 +112,7 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         if let Some(&Minimum { x, first_start, .. }) = self.starts.get(self.place as usize) {
             let fit = Fit::begin(scene, &self.bounds, x, &self.rough());
             self.evaluations.linearize += 1;
-            self.fits.push(Trial {
+            self.fits.push(&Trial {
                 fit,
                 start: first_start,
             });

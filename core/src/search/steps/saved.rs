@@ -1,13 +1,13 @@
 //! The state of a search as bytes.
 
 use super::{Kind, Phase, SearchIn, Task, Trial};
-use crate::list::Memory;
+use crate::list::List;
 use crate::minima::Minimum;
 use crate::real::Real;
 use crate::saved::{Saved, Tape};
 use crate::search::{BANDS, Waits};
 
-impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = Trial<R, P>>> Saved
+impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Trial<R, P>>> Saved
     for SearchIn<R, P, M, F>
 {
     fn shape(&self) -> [u32; 3] {
@@ -81,8 +81,10 @@ impl<R: Real, const P: usize, M: Memory<Item = Minimum<R, P>>, F: Memory<Item = 
         ] {
             tape.reals(core::slice::from_mut(number));
         }
-        tape.list(&mut self.starts, |tape, start| start.fields(tape));
-        tape.list(&mut self.fits, |tape, trial| {
+        tape.list(self.starts.as_mut_view(), Minimum::EMPTY, |tape, start| {
+            start.fields(tape)
+        });
+        tape.list(&mut self.fits, Trial::EMPTY, |tape, trial| {
             trial.fit.fields(tape);
             tape.u64(&mut trial.start);
         });

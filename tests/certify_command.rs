@@ -205,7 +205,7 @@ fn the_guide_shows_what_is_printed() {
             .unwrap()
             .trim_end()
     };
-    let command: Vec<&str> = block("```sh\nbrdfit ").split(' ').collect();
+    let command: Vec<&str> = block("```sh\ncargo run --release -- ").split(' ').collect();
     let shown = block("```text\n").split(" boxes").next().unwrap();
     let printed = succeed(&command);
     assert!(printed.contains(&format!("{shown} boxes")), "{printed}");

@@ -97,7 +97,10 @@ fn with<R: Real, T, const P: usize>(
     then: impl Fn(&Kernel<R, P>) -> Result<T, FitError>,
 ) -> Result<T, FitError> {
     let mut made = Err(FitError::Interrupted);
-    point(samples, options.simd, &mut |scan| made = then(scan))?;
+    // Of a list of models those that are left end here, before a million samples are compiled, or room is made for as many starts.
+    if !options.until.is_over() {
+        point(samples, options.simd, &mut |scan| made = then(scan))?;
+    }
     made
 }
 
@@ -135,7 +138,12 @@ impl<const P: usize> Bound<P> {
         let found = self.seen(samples, options, |scan| {
             Ok(self.joint_after(&[before, &[scan]].concat(), all, shared, options))
         });
-        found.map_err(|error| (place, error))?
+        // An interruption is of no scan.
+        let of = |error| match error {
+            FitError::Interrupted => all.len(),
+            _ => place,
+        };
+        found.map_err(|error| (of(error), error))?
     }
 }
 

@@ -82,10 +82,6 @@ pub(crate) fn run<R: Real, const P: usize>(
     setup: &Setup,
     known: &[Values],
 ) -> Result<Outcome, FitError> {
-    // Of a list of models those that are left end here, before room is made for a million starts.
-    if options.until.is_over() {
-        return Err(FitError::Interrupted);
-    }
     let layout = Layout::new(own, options.model);
     let rows = Rows::new(&layout, options, setup, samples);
     let beside = Beside { scene, rows: &rows };

@@ -16,6 +16,7 @@ LONG = {
     "fit of the default method": "brdfit.fit(scan, starts=1_000_000)",
     "errors of a long scan": "brdfit.fit(45, dense, wandering, terms='diffuse')",
     "fit with every model": "brdfit.fit(scan, model='auto', terms='auto', method='paper', starts=1_000_000)",
+    "a long scan, with every model": "brdfit.fit(45, dense, wandering, model='auto')",
     "robust": "brdfit.fit(scan, robust=True, method='paper', starts=1_000_000)",
     "fit_many": "brdfit.fit_many(45, np.arange(-80.0, 80.0), many)",
     "certify": "brdfit.fit(scan, certify=1e-9)",

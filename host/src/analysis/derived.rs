@@ -10,7 +10,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::misfit::coverage_factor;
-use super::reflectance::reflectance;
+use super::reflectance::{reflectance, reflectance_alone};
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values, View};
 use from_data::{Line, Read};
@@ -58,8 +58,13 @@ pub struct Derived {
 impl Derived {
     /// Does no more light leave than arrives?
     pub fn conserves_energy(&self) -> bool {
-        self.reflectance.value <= 1.0
+        conserves_energy(self.reflectance.value)
     }
+}
+
+/// Does no more light leave than arrives, by a reflectance?
+pub fn conserves_energy(reflectance: f64) -> bool {
+    reflectance <= 1.0
 }
 
 /// A value whose 95 % interval, of `factor` standard errors to each side, is wider than `range` to each side has none: its standard error is infinite.
@@ -76,14 +81,25 @@ fn told(value: Value, range: f64, factor: f64) -> Value {
 /// At each angle of incidence of `samples`, in ascending order; angles within a hundredth of a degree count as one.
 pub fn at_each_angle(samples: &[Sample<f64>], view: impl Into<View>, known: &Uncertainty) -> Vec<Derived> {
     let view = view.into();
-    let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
-    angles.sort_by(f64::total_cmp);
-    angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
     // Student's t of thousands of degrees of freedom takes longer than all the rest.
     let factor = coverage_factor(known);
     let lines = from_data::of(samples, &view, known);
     let one = |theta_i: f64| with_factor(theta_i, &view.material, known, factor, Line::at(&lines, theta_i));
-    angles.into_iter().map(one).collect()
+    angles(samples).into_iter().map(one).collect()
+}
+
+/// The value of [`Derived::reflectance`] at each of the same angles.
+pub fn reflectances(samples: &[Sample<f64>], material: &Material) -> Vec<f64> {
+    let one = |theta_i: f64| reflectance_alone(material, theta_i);
+    angles(samples).into_iter().map(one).collect()
+}
+
+/// The angles of incidence, ascending, without those that count as one with another.
+fn angles(samples: &[Sample<f64>]) -> Vec<f64> {
+    let mut angles: Vec<f64> = samples.iter().map(|sample| sample.theta_i).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup_by(|b, a| *b - *a < 0.01f64.to_radians());
+    angles
 }
 
 /// At one angle of incidence, radians, by the parameters alone.

@@ -21,6 +21,15 @@ use crate::until::until;
 /// Samples that a thread takes at least.
 const SHARE: usize = 4096;
 
+/// How much is told of a fitted scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// All of it.
+    All,
+    /// What the columns of a table tell; [`FittedScan::derived`] is empty.
+    Columns,
+}
+
 /// One fitted scan.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -49,7 +58,9 @@ pub struct FittedScan {
     pub left_out_by_auto: u8,
     /// Why this model and these terms, if the scan chose them.
     pub choice: Option<Choice>,
-    /// What follows from it at each angle of incidence.
+    /// Directional-hemispherical reflectance at each angle of incidence in ascending order, dimensionless; above 1 the model makes energy.
+    pub reflectances: Vec<f64>,
+    /// What follows from it at each angle of incidence, if all is told.
     pub derived: Vec<Derived>,
     /// The cost that the search had found, if another fit then led lower.
     pub improved_from: Option<f64>,
@@ -59,6 +70,8 @@ pub struct FittedScan {
     pub hints: Vec<Hint>,
     /// Time of the search, without reading the file; none where every run is to give the same bits.
     pub elapsed: Option<Duration>,
+    /// How much of all this was wanted.
+    told: Told,
 }
 
 /// How well the samples of one angle of incidence are fitted.
@@ -89,12 +102,29 @@ impl FittedScan {
     ///
     /// Lobes that no sample sees are left out, and the uncertainty accounts for the correlation of the residuals.
     pub fn new(measurement: &Measurement, options: &FitOptions, outcome: Outcome, elapsed: Duration) -> Self {
+        FittedScan::telling(Told::All, measurement, options, outcome, elapsed)
+    }
+
+    fn telling(
+        told: Told,
+        measurement: &Measurement,
+        options: &FitOptions,
+        outcome: Outcome,
+        elapsed: Duration,
+    ) -> Self {
         let (samples, left_out) = without_outliers(measurement, &outcome);
         let (outcome, verdict) = known(measurement, &samples, options, outcome);
         // What nobody waits for any more is thrown away, and of a long scan it takes its time.
         let over = until().is_over();
         let samples = if over { Cow::Owned(Vec::new()) } else { samples };
-        let derived = derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty);
+        let derived = match told {
+            Told::All => derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty),
+            Told::Columns => Vec::new(),
+        };
+        let reflectances = match told {
+            Told::All => derived.iter().map(|at| at.reflectance.value).collect(),
+            Told::Columns => derived::reflectances(&samples, &outcome.material()),
+        };
         FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
@@ -104,8 +134,9 @@ impl FittedScan {
             angles: by_angle(&samples, &outcome.view()),
             hints: match over {
                 true => Vec::new(),
-                false => hints::of_fit(measurement, options, &outcome, &derived),
+                false => hints::of_fit(measurement, options, &outcome, &reflectances),
             },
+            reflectances,
             derived,
             options: *options,
             chi2: measurement
@@ -118,6 +149,7 @@ impl FittedScan {
             improved_from: None,
             proof: None,
             elapsed: Some(elapsed),
+            told,
         }
     }
 
@@ -167,7 +199,13 @@ impl FittedScan {
             choice,
             improved_from: self.improved_from.or(Some(self.outcome.cost)),
             elapsed: self.elapsed,
-            ..FittedScan::new(measurement, &options, outcome, self.elapsed.unwrap_or_default())
+            ..FittedScan::telling(
+                self.told,
+                measurement,
+                &options,
+                outcome,
+                self.elapsed.unwrap_or_default(),
+            )
         })
     }
 }
@@ -214,6 +252,14 @@ pub fn known(
 /// # Ok::<(), brdfit::error::Error>(())
 /// ```
 pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
+    fit_telling(Told::All, measurement, wanted)
+}
+
+/// The same with as much as is wanted: of a small scan all takes as long as the fit.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_telling(told: Told, measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
     let begun = Stopwatch::start();
     let found = choose::fit(&measurement.samples, wanted);
     let elapsed = begun.elapsed();
@@ -223,7 +269,7 @@ pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Err
             .help("take less extreme --bounds or --precision f64")),
         Ok((options, outcome, choice)) => Ok(FittedScan {
             choice,
-            ..FittedScan::new(measurement, &options, outcome, elapsed)
+            ..FittedScan::telling(told, measurement, &options, outcome, elapsed)
         }),
         Err(error) => Err(input::explain(measurement, error)),
     }

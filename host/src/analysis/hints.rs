@@ -7,7 +7,6 @@ mod shadow;
 use brdfit_core::geometry::Sample;
 use serde::Serialize;
 
-use crate::analysis::derived::Derived;
 use crate::engine::scale::Scale;
 use crate::engine::{FitOptions, Outcome, robust};
 use crate::input::units::{Forward, Quantity};
@@ -68,11 +67,11 @@ fn before_fit(measurement: &Measurement) -> Vec<Hint> {
     hints
 }
 
-/// What the samples and their fit tell together.
-pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Vec<Hint> {
+/// What the samples and their fit tell together; the reflectances are those at each angle of incidence.
+pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, reflectances: &[f64]) -> Vec<Hint> {
     let mut hints = before_fit(measurement);
     hints.extend(unit(&measurement.samples, options));
-    hints.extend(quantity(measurement, options, outcome, derived));
+    hints.extend(quantity(measurement, options, outcome, reflectances));
     let moved = match outcome.offset {
         Some(_) => None,
         None => offset::confirmed(measurement, options, outcome),
@@ -122,18 +121,15 @@ fn unit(samples: &[Sample<f64>], options: &FitOptions) -> Option<Hint> {
 }
 
 /// Are the values a reflectance factor, or not calibrated? More light comes back than went in, and not only by a lobe: rho_d is on its bound, or near 1 and the excess clear at all angles of incidence.
-fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, derived: &[Derived]) -> Option<Hint> {
+fn quantity(measurement: &Measurement, options: &FitOptions, outcome: &Outcome, reflectances: &[f64]) -> Option<Hint> {
     const BRIGHT: f64 = 0.8;
     const CLEARLY: f64 = 1.2;
-    let reflectances = || derived.iter().map(|at| at.reflectance.value);
-    let (least, most) = (
-        reflectances().fold(f64::INFINITY, f64::min),
-        reflectances().fold(0.0, f64::max),
-    );
+    let least = reflectances.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = reflectances.iter().copied().fold(0.0, f64::max);
     let place = outcome.model.place("rho_d")?;
     let (rho_d, upper) = (outcome.params[place], options.upper[place]);
     let on_bound = outcome.at_bound.contains(&"rho_d") && rho_d >= upper && upper >= 1.0;
-    if derived.is_empty() || !(on_bound && most > 1.0 || rho_d >= BRIGHT && least > CLEARLY) {
+    if reflectances.is_empty() || !(on_bound && most > 1.0 || rho_d >= BRIGHT && least > CLEARLY) {
         return None;
     }
     let bound = if on_bound { "rho_d is on its bound and " } else { "" };

@@ -6,7 +6,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::uncertainty::Place;
 
 use super::misfit::coverage_factor;
-use super::reflectance::reflectance;
+use super::reflectance::slope_by_weight;
 use super::unseen::forget;
 use crate::engine::scale::Scale;
 use crate::engine::uncertainty::NEAR_ZERO;
@@ -94,6 +94,6 @@ fn makes_energy(samples: &[Sample<f64>], outcome: &Outcome, place: usize, more: 
     let (least, most) = (angles().fold(f64::INFINITY, f64::min), angles().fold(0.0, f64::max));
     // Most files of a batch have one.
     let ends = if least < most { &[least, most][..] } else { &[least] };
-    let slope = |theta_i: f64| reflectance(&outcome.material(), theta_i).1[place];
+    let slope = |theta_i: f64| slope_by_weight(&outcome.material(), theta_i, place);
     ends.iter().any(|&theta_i| more * slope(theta_i) > 1.0)
 }

@@ -11,9 +11,9 @@ use crate::engine::{Material, Values};
 
 /// Reflectance at `theta_i`, radians, and its derivatives by the parameters at [`Material::off_zero`]; dimensionless, above 1 where the model makes energy.
 pub fn reflectance(material: &Material, theta_i: f64) -> (f64, Values) {
-    match <[f64; 6]>::try_from(&material.values[..]) {
-        Ok(values) if material.model.is_paper() => slopes::of_eq_14(values, theta_i),
-        _ => {
+    match eq_14(material) {
+        Some(values) => slopes::of_eq_14(values, theta_i),
+        None => {
             let (value, gradient) = of_any(material, theta_i);
             let slopes = material.off_zero();
             let gradient = if slopes == *material {
@@ -24,6 +24,28 @@ pub fn reflectance(material: &Material, theta_i: f64) -> (f64, Values) {
             (value, gradient)
         }
     }
+}
+
+/// The reflectance alone, of the same bits.
+pub fn reflectance_alone(material: &Material, theta_i: f64) -> f64 {
+    match eq_14(material) {
+        Some(values) => slopes::of_weights(values, theta_i).0,
+        None => of_any(material, theta_i).0,
+    }
+}
+
+/// The derivative of the reflectance by the weight in `place`, of the same bits.
+pub fn slope_by_weight(material: &Material, theta_i: f64, place: usize) -> f64 {
+    match eq_14(material) {
+        Some(values) => slopes::of_weights(values, theta_i).1[place],
+        None => reflectance(material, theta_i).1[place],
+    }
+}
+
+/// The parameters of Eq. 14, if it is that model.
+fn eq_14(material: &Material) -> Option<[f64; 6]> {
+    let values = <[f64; 6]>::try_from(&material.values[..]).ok()?;
+    material.model.is_paper().then_some(values)
 }
 
 /// Nodes along a ray from a peak, and rays around it, for any model.

@@ -6,7 +6,7 @@ use brdfit_core::model::Parameter;
 use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
-use crate::analysis::derived::Derived;
+use crate::analysis::derived::conserves_energy;
 use crate::analysis::deviations::Verdict;
 use crate::analysis::fit::FittedScan;
 use crate::analysis::misfit::coverage_factor;
@@ -323,7 +323,7 @@ fn of_scan() -> Vec<Column> {
             Some(worst.degrees())
         }),
         number("reflectance_least_theta_i", "1", least, Otherwise, |row| {
-            Some(row.scan?.derived.first()?.reflectance.value)
+            row.scan?.reflectances.first().copied()
         }),
         number(
             "chi2",
@@ -346,7 +346,7 @@ fn of_scan() -> Vec<Column> {
             Some(row.scan?.left_out.iter().map(|one| one.samples as u64).sum())
         }),
         flag("energy_conserved", conserved, Otherwise, |row| {
-            Some(row.scan?.derived.iter().all(Derived::conserves_energy))
+            Some(row.scan?.reflectances.iter().copied().all(conserves_energy))
         }),
         number("certified_eps", "1", proved, Otherwise, |row| row.scan?.proof?.within()),
         whole("certificate_boxes", "boxes of the proof", Otherwise, |row| {

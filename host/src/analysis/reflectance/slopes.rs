@@ -1,5 +1,6 @@
 //! The reflectance of Eq. 14, integrated over the slopes of the facets, so that a narrow lobe is no harder than a wide one.
 
+use std::cell::Cell;
 use std::f64::consts::PI;
 
 use brdfit_core::brdf::Reflecting;
@@ -19,7 +20,9 @@ const INNER: f64 = 1e-7;
 const OUTER: f64 = 1e-6;
 
 /// Surface and volume lobe of rho = 1, then their derivatives by m, n and kappa.
-const LOBES: usize = 8;
+const ALL: usize = 8;
+/// The lobes alone; the halvings are by these, so that they have the same bits without the others.
+const LOBES: usize = 2;
 
 /// The direction of incidence and the facets.
 struct Facets {
@@ -37,24 +40,46 @@ struct Facets {
 /// With d omega_s = 4 cos theta_d d omega_h and d omega_h = cos^3 theta_h d^2 slope, the surface lobe (Eq. 8, 14) leaves `rho_s F G cos theta_d / (cos theta_i cos theta_h)` to be averaged over the Gaussian of the slopes, and the volume lobe `4 rho_v F cos theta_s cos theta_d / cos theta_h`.
 /// Only facets that send light above the horizon count.
 pub fn of_eq_14([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (f64, Values) {
-    let (sin_i, cos_i) = Real::portable_sin_cos(theta_i);
-    let facets = Facets {
-        sin_i,
-        cos_i,
-        // Without lobes any m does.
-        m: if m > 0.0 { m } else { 1.0 },
-        surface: Reflecting::new(n, kappa),
-        off_zero: (kappa == 0.0).then(|| Reflecting::new(n, NEAR_ZERO)),
-        simd: Simd::best(),
-    };
-    let sums = facets.lobes();
+    let off_zero = (kappa == 0.0).then(|| Reflecting::new(n, NEAR_ZERO));
+    let sums: [f64; ALL] = Facets::new([m, n, kappa], theta_i, off_zero).lobes();
     let both = |k: usize| rho_s * sums[2 * k] + rho_v * sums[2 * k + 1];
     let gradient = [1.0, sums[0], sums[1], both(1), both(2), both(3)];
     (rho_d + both(0), Values::from(gradient))
 }
 
+thread_local! {
+    /// What the lobes were asked for last, and what they are: all that is asked of one fit is at the same few numbers.
+    static LAST: Cell<([f64; 4], [f64; LOBES])> = const { Cell::new(([f64::NAN; 4], [0.0; LOBES])) };
+}
+
+/// The same with the derivatives by the three weights alone.
+pub fn of_weights([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (f64, [f64; 3]) {
+    let asked = [m, n, kappa, theta_i];
+    let (last, mut lobes) = LAST.get();
+    if last != asked {
+        lobes = Facets::new([m, n, kappa], theta_i, None).lobes();
+        LAST.set((asked, lobes));
+    }
+    let [surface, volume] = lobes;
+    (rho_d + (rho_s * surface + rho_v * volume), [1.0, surface, volume])
+}
+
 impl Facets {
-    fn lobes(&self) -> [f64; LOBES] {
+    fn new([m, n, kappa]: [f64; 3], theta_i: f64, off_zero: Option<Reflecting<f64>>) -> Self {
+        let (sin_i, cos_i) = Real::portable_sin_cos(theta_i);
+        Facets {
+            sin_i,
+            cos_i,
+            // Without lobes any m does.
+            m: if m > 0.0 { m } else { 1.0 },
+            surface: Reflecting::new(n, kappa),
+            off_zero,
+            simd: Simd::best(),
+        }
+    }
+
+    /// The integrals of the first `N` of [`ALL`].
+    fn lobes<const N: usize>(&self) -> [f64; N] {
         let widest = (EXTENT * self.m).min(1.0 / self.cos_i);
         // Across the plane of incidence: where kinks along it meet, and what the Gaussian is wide.
         let tan_i = self.sin_i / self.cos_i;
@@ -68,9 +93,9 @@ impl Facets {
         ];
         let mut largest = 0.0f64;
         let mut across = |places: &[f64; PLACES]| {
-            let mut sums = [[0.0; PLACES]; LOBES];
+            let mut sums = [[0.0; PLACES]; N];
             for (place, &b) in places.iter().enumerate().take(PLACES - 1) {
-                let along = self.along(b, 1e-3 * largest);
+                let along = self.along::<N>(b, 1e-3 * largest);
                 largest = largest.max(along[0]).max(along[1]);
                 for (sum, one) in sums.iter_mut().zip(along) {
                     sum[place] = one;
@@ -78,11 +103,11 @@ impl Facets {
             }
             sums
         };
-        integrate(&mut across, &Ends::new(0.0, widest, kinks), 2, OUTER, 0.0)
+        integrate(&mut across, &Ends::new(0.0, widest, kinks), LOBES, OUTER, 0.0)
     }
 
     /// The integral over the slopes in the plane of incidence, with `b` across it.
-    fn along(&self, b: f64, size: f64) -> [f64; LOBES] {
+    fn along<const N: usize>(&self, b: f64, size: f64) -> [f64; N] {
         let (sin_i, cos_i) = (self.sin_i, self.cos_i);
         // cos theta_s = 0 where cos ti a^2 - 2 sin ti a + cos ti (b^2 - 1) = 0.
         let middle = sin_i / cos_i;
@@ -90,19 +115,19 @@ impl Facets {
         let low = ((b * b - 1.0) / (middle + reach)).max(-EXTENT * self.m);
         let high = (middle + reach).min(EXTENT * self.m);
         if low >= high {
-            return [0.0; LOBES];
+            return [0.0; N];
         }
         let m = self.m;
         let kinks = [0.0, m, -m, 2.5 * m, -2.5 * m];
         let kinks = kinks.into_iter().chain(self.kinks(b).into_iter().flatten());
         let mut integrand = |places: &[f64; PLACES]| {
-            self.simd.run(Integrand {
+            self.simd.run(Integrand::<N> {
                 facets: self,
                 places,
                 b,
             })
         };
-        integrate(&mut integrand, &Ends::new(low, high, kinks), 2, INNER, size)
+        integrate(&mut integrand, &Ends::new(low, high, kinks), LOBES, INNER, size)
     }
 
     /// Where the masking along the plane of incidence has kinks.
@@ -129,7 +154,7 @@ impl Facets {
 }
 
 /// The lobes at some slopes along the plane of incidence, side by side.
-struct Integrand<'a> {
+struct Integrand<'a, const N: usize> {
     facets: &'a Facets,
     places: &'a [f64; PLACES],
     b: f64,
@@ -138,17 +163,17 @@ struct Integrand<'a> {
 /// Places that go through a formula together, as in the passes of a fit.
 const TOGETHER: usize = 2;
 
-impl NullaryFnOnce for Integrand<'_> {
-    type Output = [[f64; PLACES]; LOBES];
+impl<const N: usize> NullaryFnOnce for Integrand<'_, N> {
+    type Output = [[f64; PLACES]; N];
 
     #[inline(always)]
-    fn call(self) -> [[f64; PLACES]; LOBES] {
-        let mut all = [[0.0; PLACES]; LOBES];
+    fn call(self) -> [[f64; PLACES]; N] {
+        let mut all = [[0.0; PLACES]; N];
         for lane in 0..PLACES / TOGETHER {
             let a = Pack::<f64, TOGETHER>::gather(self.places, lane);
             let lobes = self.facets.integrand(a, self.b);
             for half in 0..TOGETHER {
-                for k in 0..LOBES {
+                for k in 0..N {
                     all[k][lane + half * (PLACES / TOGETHER)] = lobes[k].0[half];
                 }
             }
@@ -159,7 +184,7 @@ impl NullaryFnOnce for Integrand<'_> {
 
 impl Facets {
     #[inline(always)]
-    fn integrand(&self, a: Pack<f64, TOGETHER>, b: f64) -> [Pack<f64, TOGETHER>; LOBES] {
+    fn integrand(&self, a: Pack<f64, TOGETHER>, b: f64) -> [Pack<f64, TOGETHER>; ALL] {
         let m2 = self.m * self.m;
         let slope2 = a * a + b * b;
         let r2 = slope2 / m2;

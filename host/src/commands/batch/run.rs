@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
-use crate::analysis::fit::{AngleOfIncidence, FittedScan, fit, prove};
+use crate::analysis::fit::{AngleOfIncidence, FittedScan, Told, fit_telling, prove};
 use crate::analysis::proof::Goal;
 use crate::engine::Model;
 use crate::error::Error;
@@ -68,12 +68,16 @@ fn lock(journal: &Mutex<Journal>) -> std::sync::MutexGuard<'_, Journal> {
 /// The scans of a file, fitted; `None` after an interrupt.
 fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<ScanRecord>> {
     let name = path.display().to_string();
+    let told = match job.rows {
+        Rows::Objects => Told::All,
+        Rows::Cells => Told::Columns,
+    };
     let one = |measurement: Measurement| {
         if job.interrupt.load(Ordering::Relaxed) {
             return None;
         }
         let measurement = deviations::settled(measurement, job.wanted);
-        let found = fit(&measurement, job.wanted).and_then(|scan| match &job.goal {
+        let found = fit_telling(told, &measurement, job.wanted).and_then(|scan| match &job.goal {
             Some(goal) => prove(&measurement, scan, goal),
             None => Ok(scan),
         });

@@ -1,9 +1,10 @@
 //! What is kept of a fitted file: one line of JSON with its checksum, in a file that begins with a line that says of which batch it is.
 
+use std::fmt;
 use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::shard::Shard;
@@ -67,13 +68,43 @@ pub struct ScanRecord {
 }
 
 /// A row of the results in one of the forms of [`Rows`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Written {
     /// One cell a column.
     Cells(Vec<Cell>),
     /// A JSON object.
     Object(String),
+}
+
+/// As [`Cell`] is read.
+impl<'de> Deserialize<'de> for Written {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(OfJson)
+    }
+}
+
+struct OfJson;
+
+impl<'de> Visitor<'de> for OfJson {
+    type Value = Written;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("cells, or a JSON object as text")
+    }
+    fn visit_str<E>(self, object: &str) -> Result<Written, E> {
+        Ok(Written::Object(object.into()))
+    }
+    fn visit_string<E>(self, object: String) -> Result<Written, E> {
+        Ok(Written::Object(object))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Written, A::Error> {
+        let mut cells = Vec::new();
+        while let Some(cell) = list.next_element()? {
+            cells.push(cell);
+        }
+        Ok(Written::Cells(cells))
+    }
 }
 
 /// Rows as they come.

@@ -1,5 +1,8 @@
 //! What stands in one column of one row.
 
+use std::fmt;
+
+use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use crate::number::shortest;
@@ -19,7 +22,7 @@ pub enum Kind {
 }
 
 /// A value; as JSON it is that value alone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Cell {
     /// There is none.
@@ -57,6 +60,48 @@ impl Cell {
             Cell::Text(text) => text.clone(),
             Cell::Words(words) => words.join("+"),
         }
+    }
+}
+
+/// By the kind of the JSON value: serde's own way tries one variant after the other, and makes an error of each.
+impl<'de> Deserialize<'de> for Cell {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(OfJson)
+    }
+}
+
+struct OfJson;
+
+impl<'de> Visitor<'de> for OfJson {
+    type Value = Cell;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a cell")
+    }
+    fn visit_unit<E>(self) -> Result<Cell, E> {
+        Ok(Cell::Empty)
+    }
+    fn visit_bool<E>(self, flag: bool) -> Result<Cell, E> {
+        Ok(Cell::Flag(flag))
+    }
+    fn visit_u64<E>(self, whole: u64) -> Result<Cell, E> {
+        Ok(Cell::Whole(whole))
+    }
+    fn visit_i64<E>(self, number: i64) -> Result<Cell, E> {
+        Ok(Cell::Number(number as f64))
+    }
+    fn visit_f64<E>(self, number: f64) -> Result<Cell, E> {
+        Ok(Cell::Number(number))
+    }
+    fn visit_str<E>(self, text: &str) -> Result<Cell, E> {
+        Ok(Cell::Text(text.into()))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Cell, A::Error> {
+        let mut words = Vec::new();
+        while let Some(word) = list.next_element()? {
+            words.push(word);
+        }
+        Ok(Cell::Words(words))
     }
 }
 

@@ -27,6 +27,7 @@ use along::Along;
 use mixture::Student;
 use nodes::Node;
 use process::{Process, Residuals};
+use rows::Rows;
 
 /// ln of the likelihood must be so much above that of independence, which one in six scans with independent errors reaches; below it errors are theirs.
 ///
@@ -65,19 +66,24 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 
 /// `None` where independence is not refuted, or nothing can be said.
 fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty, evidence: f64) -> Option<Uncertainty> {
-    let (all, seen) = of_fit(samples, view, known)?;
+    let (rows, all, seen) = of_fit(samples, view, known)?;
     let nodes = nodes::nodes(&all, known.degrees_of_freedom, evidence)?;
-    Some(with(samples, view, known, &seen, &nodes))
+    Some(with(&rows, known, &seen, &nodes))
 }
 
-/// The residuals with the rows of J along the axes of the parameters inside their bounds that can be told from rounding, and the places of these; `None` if there are none, or nothing can be said.
-fn of_fit(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<(Residuals, Vec<usize>)> {
+/// The samples along their lines, the residuals with the rows of J along the axes of the parameters inside their bounds that can be told from rounding, and the places of these; `None` if there are none, or nothing can be said.
+fn of_fit<'a>(
+    samples: &'a [Sample<f64>],
+    view: &'a View,
+    known: &Uncertainty,
+) -> Option<(Rows<'a>, Residuals, Vec<usize>)> {
     let inside: Vec<usize> = known.inside().collect();
     if known.degrees_of_freedom < 4 || unseen::is_exact(known) || inside.is_empty() {
         return None;
     }
     let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
-    let mut all = rows::residuals(samples, view, &axes, known.scale)?;
+    let rows = Rows::new(samples, view);
+    let mut all = rows.residuals(&axes, known.scale)?;
     let seen: Vec<bool> = (0..axes.len())
         .map(|k| {
             let squares: f64 = all.rows.iter().skip(k).step_by(axes.len()).map(|x| x * x).sum();
@@ -89,7 +95,7 @@ fn of_fit(samples: &[Sample<f64>], view: &View, known: &Uncertainty) -> Option<(
     }
     all.keep(&seen);
     let places = inside.into_iter().zip(seen).filter(|(_, seen)| *seen);
-    Some((all, places.map(|(place, _)| place).collect()))
+    Some((rows, all, places.map(|(place, _)| place).collect()))
 }
 
 /// What correlated residuals make of a comparison of fits of the same samples.
@@ -121,7 +127,8 @@ impl Inflation {
 pub fn inflation_of_best(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<Inflation> {
     let finite = fits.iter().filter(|fit| fit.uncertainty.scale.is_finite());
     let best = finite.min_by(|a, b| a.uncertainty.scale.total_cmp(&b.uncertainty.scale))?;
-    let (all, _) = of_fit(samples, &best.view(), &best.uncertainty)?;
+    let view = best.view();
+    let (_, all, _) = of_fit(samples, &view, &best.uncertainty)?;
     Inflation::of(&all, best.uncertainty.degrees_of_freedom)
 }
 
@@ -175,7 +182,7 @@ impl Mean {
 }
 
 /// The uncertainty with the mean covariance of the nodes.
-fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize], nodes: &[Node]) -> Uncertainty {
+fn with(rows: &Rows, known: &Uncertainty, seen: &[usize], nodes: &[Node]) -> Uncertainty {
     let count = seen.len();
     let mean = Mean::of(nodes, known.degrees_of_freedom);
     let (covariance, student) = (&mean.covariance, mean.student);
@@ -188,8 +195,7 @@ fn with(samples: &[Sample<f64>], view: &View, known: &Uncertainty, seen: &[usize
         });
     }
     let along = Along {
-        samples,
-        view,
+        rows,
         known,
         nodes,
         tails: student.variance,

@@ -52,11 +52,11 @@ impl View {
 
     /// The same, and its derivatives by the parameters.
     pub fn gradient(&self, sample: &Sample<f64>) -> Option<(f64, Values)> {
+        if self.aperture == 0.0 {
+            return self.material.gradient(&moved(sample, self.offset)?);
+        }
         let ln_f = self.ln_f(sample)?;
         let sample = moved(sample, self.offset)?;
-        if self.aperture == 0.0 {
-            return self.material.gradient(&sample);
-        }
         let mut sum = Values::from_fn(self.material.values.len(), |_| 0.0);
         for (at, share) in directions(&sample, self.aperture) {
             if let Some((part, gradient)) = self.material.gradient(&at) {

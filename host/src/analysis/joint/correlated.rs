@@ -5,7 +5,8 @@ use brdfit_core::real::Real;
 
 use crate::analysis::misfit::nodes;
 use crate::analysis::misfit::process::Residuals;
-use crate::analysis::misfit::{EVIDENCE, Inflation, Mean, rows};
+use crate::analysis::misfit::rows::Rows;
+use crate::analysis::misfit::{EVIDENCE, Inflation, Mean};
 use crate::analysis::unseen;
 use crate::engine::joint::JointFit;
 use crate::engine::uncertainty::Misfit;
@@ -60,7 +61,8 @@ impl Linear {
             };
             let axes: Vec<Values> = owners.iter().map(axis).collect();
             let axes: Vec<&Values> = axes.iter().collect();
-            let one = rows::residuals(samples, &options.view(fitted.scans[scan]), &axes, scale)?;
+            let view = options.view(fitted.scans[scan]);
+            let one = Rows::new(samples, &view).residuals(&axes, scale)?;
             let begin = all.values.len();
             all.angles.extend(one.angles);
             all.offsets.extend(one.offsets);

@@ -2,23 +2,21 @@
 //!
 //! A misfit that wanders over tens of degrees looks like a change of rho_d, and not like one of the width of a narrow lobe: so each displacement has a factor of its own.
 
-use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
 
 use super::nodes::Node;
-use super::rows::residuals;
+use super::rows::Rows;
 use super::sandwich::{Common, cholesky};
+use crate::engine::Values;
 use crate::engine::uncertainty::Uncertainty;
-use crate::engine::{Values, View};
 
 /// Rows of J along an axis of one standard error have a length of 1; what is far from that is no such axis.
 const UNIT: std::ops::Range<f64> = 0.5..2.0;
 
 /// A fit and the processes that its residuals may be of.
 pub struct Along<'a> {
-    pub samples: &'a [Sample<f64>],
-    pub view: &'a View,
+    pub rows: &'a Rows<'a>,
     /// The errors of independent residuals.
     pub known: &'a Uncertainty,
     pub nodes: &'a [Node],
@@ -64,20 +62,21 @@ impl Along<'_> {
 
     /// The mean covariance of the least-squares fit along some axes, in units of each, and the squared lengths of their rows of J; `None` if the samples do not see one.
     fn covariance(&self, axes: &[&Values]) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
-        let all = residuals(self.samples, self.view, axes, self.known.scale)?;
+        let all = self.rows.residuals(axes, self.known.scale)?;
         let length = |k: usize| -> f64 { all.rows.iter().skip(k).step_by(axes.len()).map(|x| x * x).sum() };
         let lengths: Vec<f64> = (0..axes.len()).map(length).collect();
         if !lengths.iter().all(|length| length.is_finite() && *length > 0.0) {
             return None;
         }
         let processes: Vec<_> = self.nodes.iter().map(|node| (node.process, node.variance)).collect();
-        let covariances = Common::new(&all).covariances(&all, &processes)?;
         let mut mean = vec![vec![0.0; axes.len()]; axes.len()];
-        for (node, one) in self.nodes.iter().zip(&covariances) {
+        let mut nodes = self.nodes.iter();
+        Common::new(&all).each(&all, &processes, |one| {
+            let weight = nodes.next().map_or(0.0, |node| node.weight);
             for (mean, one) in mean.iter_mut().flatten().zip(one.iter().flatten()) {
-                *mean += node.weight * one;
+                *mean += weight * one;
             }
-        }
+        })?;
         for i in 0..axes.len() {
             for j in 0..axes.len() {
                 mean[i][j] *= self.tails / Real::sqrt(lengths[i] * lengths[j]);

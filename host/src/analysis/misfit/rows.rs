@@ -8,52 +8,91 @@ use super::process::Residuals;
 use crate::engine::{Values, View};
 use crate::until::until;
 
-/// Residuals that a thread takes at once.
+/// Residuals that a thread takes at once; of longer scans nothing is kept of each sample but its place.
 const SHARE: usize = 4096;
 
-/// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite, or if nobody waits for them any more.
-pub fn residuals(samples: &[Sample<f64>], view: &View, axes: &[&Values], scale: f64) -> Option<Residuals> {
-    let slopes = View {
-        material: view.material.off_zero(),
-        ..*view
-    };
-    let mut all = Residuals {
-        columns: axes.len(),
-        ..Residuals::default()
-    };
-    let mut places = Vec::with_capacity(samples.len());
-    for line in lines::of(samples) {
-        for (place, angle) in line {
-            places.push(place);
-            all.angles.push(angle);
-            all.offsets.push(angle - samples[place].theta_i);
+/// The samples of a scan along its lines, and what a fit makes of them.
+pub struct Rows<'a> {
+    samples: &'a [Sample<f64>],
+    view: &'a View,
+    /// The same where kappa has a derivative.
+    slopes: View,
+    /// Without values and rows.
+    lines: Residuals,
+    /// Which sample is in each place of these.
+    places: Vec<usize>,
+    /// The residual and the derivatives of ln f of each, unless the scan is long.
+    known: Vec<Option<(f64, Values)>>,
+}
+
+impl<'a> Rows<'a> {
+    /// Of the samples of a fit.
+    pub fn new(samples: &'a [Sample<f64>], view: &'a View) -> Self {
+        let slopes = View {
+            material: view.material.off_zero(),
+            ..*view
+        };
+        let (mut lines, mut places) = (Residuals::default(), Vec::with_capacity(samples.len()));
+        for line in lines::of(samples) {
+            for (place, angle) in line {
+                places.push(place);
+                lines.angles.push(angle);
+                lines.offsets.push(angle - samples[place].theta_i);
+            }
+            lines.ends.push(places.len());
         }
-        all.ends.push(places.len());
+        let mut rows = Rows {
+            samples,
+            view,
+            slopes,
+            lines,
+            places,
+            known: Vec::new(),
+        };
+        if rows.places.len() <= SHARE {
+            rows.known = rows.places.iter().map(|&sample| rows.computed(sample)).collect();
+        }
+        rows
     }
-    all.values.resize(places.len(), 0.0);
-    all.rows.resize(places.len() * axes.len(), 0.0);
-    let one = |place: usize, value: &mut f64, row: &mut [f64]| {
-        let sample = &samples[place];
-        *value = view.residual(sample)? / scale;
-        let gradient = slopes.gradient(sample)?.1;
-        for (x, axis) in row.iter_mut().zip(axes) {
-            let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
-            *x = sum * sample.weight / scale;
-        }
-        (value.is_finite() && row.iter().all(|x| x.is_finite())).then_some(())
-    };
-    let values = all.values.par_chunks_mut(SHARE);
-    let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
-    let shares = shares.zip(places.par_chunks(SHARE));
-    let until = until();
-    let whole = shares.map(|((values, rows), places)| {
-        if until.is_over() {
-            return None;
-        }
-        let rows = rows.chunks_mut(axes.len());
-        let mut points = places.iter().zip(values.iter_mut().zip(rows));
-        points.try_for_each(|(&place, (value, row))| one(place, value, row))
-    });
-    whole.collect::<Option<()>>()?;
-    Some(all)
+
+    fn computed(&self, sample: usize) -> Option<(f64, Values)> {
+        let sample = &self.samples[sample];
+        Some((self.view.residual(sample)?, self.slopes.gradient(sample)?.1))
+    }
+
+    /// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite, or if nobody waits for them any more.
+    pub fn residuals(&self, axes: &[&Values], scale: f64) -> Option<Residuals> {
+        let mut all = Residuals {
+            columns: axes.len(),
+            ..self.lines.clone()
+        };
+        let count = self.places.len();
+        all.values.resize(count, 0.0);
+        all.rows.resize(count * axes.len(), 0.0);
+        let one = |place: usize, value: &mut f64, row: &mut [f64]| {
+            let sample = self.places[place];
+            let (residual, gradient) = match self.known.get(place) {
+                Some(known) => (*known)?,
+                None => self.computed(sample)?,
+            };
+            *value = residual / scale;
+            for (x, axis) in row.iter_mut().zip(axes) {
+                let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
+                *x = sum * self.samples[sample].weight / scale;
+            }
+            (value.is_finite() && row.iter().all(|x| x.is_finite())).then_some(())
+        };
+        let values = all.values.par_chunks_mut(SHARE);
+        let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
+        let until = until();
+        let whole = shares.enumerate().map(|(share, (values, rows))| {
+            if until.is_over() {
+                return None;
+            }
+            let mut points = values.iter_mut().zip(rows.chunks_mut(axes.len())).enumerate();
+            points.try_for_each(|(place, (value, row))| one(share * SHARE + place, value, row))
+        });
+        whole.collect::<Option<()>>()?;
+        Some(all)
+    }
 }

@@ -52,13 +52,28 @@ impl Common {
 
     /// The sandwiches of the least-squares fit for these processes and their variances; `None` if nobody waits for them any more.
     pub fn covariances(&self, all: &Residuals, processes: &[(Process, f64)]) -> Option<Vec<Vec<Vec<f64>>>> {
+        let mut list = Vec::with_capacity(processes.len());
+        self.each(all, processes, |covariance| list.push(covariance.to_vec()))?;
+        Some(list)
+    }
+
+    /// Calls `take` with each of them in turn.
+    pub fn each(&self, all: &Residuals, processes: &[(Process, f64)], mut take: impl FnMut(&[Vec<f64>])) -> Option<()> {
         let until = until();
         let own = squared(all);
         // Of processes that differ in their part alone the sums are the same.
         let mut known: Vec<(Process, Meat)> = Vec::new();
-        let one = |&(process, variance): &(Process, f64)| {
+        let mut covariance = own.clone();
+        for &(process, variance) in processes {
+            if until.is_over() {
+                return None;
+            }
             if process.part == 0.0 {
-                return Some(scaled(&own, variance));
+                for (to, own) in covariance.iter_mut().flatten().zip(own.iter().flatten()) {
+                    *to = variance * own;
+                }
+                take(&covariance);
+                continue;
             }
             let alike = |(other, _): &(Process, Meat)| (other.length, other.smooth) == (process.length, process.smooth);
             let place = known.iter().position(alike);
@@ -69,19 +84,16 @@ impl Common {
             let meat = &known[place].1;
             // The noise of each sample is in no other line.
             let part = (self.correlation / process.part).min(1.0);
-            let entry = |i: usize, j: usize| {
-                let within = meat.within[i][j];
-                let among = meat.among.as_ref().map_or(0.0, |among| part * (among[i][j] - within));
-                variance * (own[i][j] + process.part * (within + among))
-            };
-            let columns = all.columns;
-            (!until.is_over()).then(|| {
-                (0..columns)
-                    .map(|i| (0..columns).map(|j| entry(i, j)).collect())
-                    .collect()
-            })
-        };
-        processes.iter().map(one).collect()
+            for (i, row) in covariance.iter_mut().enumerate() {
+                for (j, to) in row.iter_mut().enumerate() {
+                    let within = meat.within[i][j];
+                    let among = meat.among.as_ref().map_or(0.0, |among| part * (among[i][j] - within));
+                    *to = variance * (own[i][j] + process.part * (within + among));
+                }
+            }
+            take(&covariance);
+        }
+        Some(())
     }
 
     fn meat(&self, all: &Residuals, process: Process) -> Meat {
@@ -109,11 +121,6 @@ pub fn covariance(all: &Residuals, process: Process, variance: f64) -> Vec<Vec<f
         *sum = variance * (*sum + process.part * crossed);
     }
     sums
-}
-
-fn scaled(matrix: &[Vec<f64>], factor: f64) -> Vec<Vec<f64>> {
-    let row = |row: &Vec<f64>| row.iter().map(|x| factor * x).collect();
-    matrix.iter().map(row).collect()
 }
 
 /// J'J.

@@ -305,21 +305,24 @@ fn without_outliers<'a>(measurement: &'a Measurement, outcome: &Outcome) -> (Cow
 fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
-    let groups = order.chunk_by(|a, b| a.theta_i == b.theta_i);
     let until = until();
+    // Threads share those of a long scan.
+    let square = |sample: &&Sample<f64>| {
+        let residual = (!until.is_over()).then(|| view.residual(sample)).flatten()?;
+        Some(residual * residual)
+    };
+    let squares: Vec<Option<f64>> = order.par_iter().with_min_len(SHARE).map(square).collect();
+    let mut rest = &squares[..];
     let one = |group: &[&Sample<f64>]| {
-        let wanted = group.iter().take_while(|_| !until.is_over());
-        let squares = wanted.filter_map(|sample| {
-            let residual = view.residual(sample)?;
-            Some(residual * residual)
-        });
+        let (own, after) = rest.split_at(group.len());
+        rest = after;
         AngleOfIncidence {
             theta_i: group[0].theta_i,
             samples: group.len(),
-            rms_ln: (squares.sum::<f64>() / group.len() as f64).sqrt(),
+            rms_ln: (own.iter().flatten().sum::<f64>() / group.len() as f64).sqrt(),
         }
     };
-    groups.map(one).collect()
+    order.chunk_by(|a, b| a.theta_i == b.theta_i).map(one).collect()
 }
 
 /// Proves that no parameters within the bounds fit a scan better; better ones that are found take the place of the fit.

@@ -45,6 +45,9 @@ const BY_THE_THIRD: [(Kind, u64, f64); 4] = [
     (Kind::Needle, 275, 3.124_965_03e1),
 ];
 
+/// Of its fourth: a valley in which the last fit ended on its limit of passes.
+const BY_THE_FOURTH: [(Kind, u64, f64); 1] = [(Kind::Bounded, 343, 1.410_891_11e-2)];
+
 fn finds(scans: &[(Kind, u64, f64)]) {
     for &(kind, k, least) in scans {
         for seed in 0..3 {
@@ -70,4 +73,9 @@ fn what_the_second_search_missed_is_found() {
 #[test]
 fn what_the_third_search_missed_is_found() {
     finds(&BY_THE_THIRD);
+}
+
+#[test]
+fn what_the_fourth_search_missed_is_found() {
+    finds(&BY_THE_FOURTH);
 }

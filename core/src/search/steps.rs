@@ -85,6 +85,8 @@ enum Task {
     Converge,
     /// A pass of the best.
     Last,
+    /// The same, of a fit that was begun once more where the last ended on the limit of passes.
+    Again,
     /// A pass of the best when its cost falls no more; the fit that is left has a model of its second derivatives.
     Settle,
 }
@@ -311,7 +313,7 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             Task::Short => self.short(scene),
             Task::Judge => self.judge(scene),
             Task::Converge => self.converge(scene),
-            Task::Last => self.last(scene),
+            Task::Last | Task::Again => self.last(scene),
             Task::Settle => self.settle(scene),
         }
         self.phase != Phase::Ended
@@ -368,6 +370,13 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
         let best = &mut self.ends.best;
         if best.stop.is_none() {
             self.evaluations.linearize += best.step(scene, &self.bounds, &self.options);
+            return;
+        }
+        // Along a valley it has become slow, by what it remembers of where it came from.
+        if best.stop == Some(Stop::Passes) && self.task == Task::Last {
+            *best = Fit::begin(scene, &self.bounds, best.x, &self.options);
+            self.evaluations.linearize += 1;
+            self.task = Task::Again;
             return;
         }
         // The gradient of an exact fit is rounding.

@@ -13,10 +13,10 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
     fn shape(&self) -> [u32; 3] {
         let (fits, minima) = (self.fits.capacity() as u32, self.ends.minima.capacity() as u32);
         let capacities = (P as u32) << 24 | (fits & 0xff) << 16 | minima & 0xffff;
-        [4, size_of::<R>() as u32, capacities]
+        [5, size_of::<R>() as u32, capacities]
     }
     fn fields(&mut self, tape: &mut Tape<'_>) {
-        use Task::{Begin, Choose, Converge, Judge, Last, Level, Propose, Settle, Short, Weigh};
+        use Task::{Again, Begin, Choose, Converge, Judge, Last, Level, Propose, Settle, Short, Weigh};
         let phases = [
             Phase::Known,
             Phase::Rounds,
@@ -26,7 +26,7 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
         ];
         tape.one_of(&mut self.phase, &phases);
         let tasks = [
-            Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last, Settle,
+            Choose, Propose, Weigh, Level, Begin, Short, Judge, Converge, Last, Again, Settle,
         ];
         tape.one_of(&mut self.task, &tasks);
         let bands: [Kind; 2 * BANDS as usize] = core::array::from_fn(|k| match k as u32 {

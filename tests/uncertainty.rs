@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use brdfit::analysis::derived;
+use brdfit::analysis::derived::{self, Peak};
 use brdfit::analysis::reflectance::reflectance;
 use brdfit::analysis::undetermined::undetermined;
 use brdfit::engine::{self, FitOptions, Material};
@@ -288,6 +288,62 @@ fn peak_and_width() {
     ];
     let largest = errors.into_iter().map(|ratio| (ratio - 1.0).abs()).fold(0.0, f64::max);
     check(largest, tolerance::LOBE_STDERR);
+}
+
+/// At 50 degrees a lobe of m = 0.1988 has two maxima that are equally bright, and beside it one of them is the peak: errors there are at least those of moving the parameters by two of their errors, to the side that changes more.
+#[test]
+fn peak_of_two_equal_maxima() {
+    let theta_i = 50f64.to_radians();
+    let mut random = random(5);
+    let mut paint = |m: f64, size: f64| -> (Material, Vec<Sample<f64>>) {
+        let material = Material::paper([0.1, 1.0, 0.0, m, 1.5, 0.0]);
+        let one = |degree: i32| {
+            let sample = Sample::in_plane(theta_i, f64::from(degree).to_radians(), 1.0);
+            let ln_f = material.ln_f(&sample).unwrap() + size * random();
+            Sample {
+                brdf: ln_f.exp(),
+                ..sample
+            }
+        };
+        (material, (-80..=80).map(one).collect())
+    };
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    let known = engine::fit(&paint(0.1988, 0.05).1, &options).unwrap().uncertainty;
+    let mut tops = Vec::new();
+    for m in [0.1975, 0.198, 0.1985, 0.199, 0.1995, 0.2] {
+        let (material, _) = paint(m, 0.0);
+        let peak = |material: &Material| derived::at(theta_i, material, &known).peak.unwrap();
+        let here = peak(&material);
+        tops.push(here.theta_s.to_degrees());
+        let mut squares = [0.0; 2];
+        for axis in &known.axes {
+            let moved = |sign: f64| {
+                let mut moved = material;
+                for (value, part) in moved.values.iter_mut().zip(axis.iter()) {
+                    *value += 2.0 * sign * part;
+                }
+                peak(&moved)
+            };
+            let both = [moved(1.0), moved(-1.0)];
+            let change = |of: &dyn Fn(&Peak) -> f64| {
+                both.iter()
+                    .map(|at| (of(at) - of(&here)).abs() / 2.0)
+                    .fold(0.0, f64::max)
+            };
+            squares[0] += change(&|at| at.f.value).powi(2);
+            squares[1] += change(&|at| at.width.unwrap().value).powi(2);
+        }
+        let errors = [here.f.stderr, here.width.unwrap().stderr];
+        for (error, square) in errors.into_iter().zip(squares) {
+            eprintln!("{m} {} {error} {}", here.theta_s.to_degrees(), error / square.sqrt());
+            check(square.sqrt() / error - 1.0, tolerance::TWO_MAXIMA);
+        }
+    }
+    assert!(tops[0] < 60.0 && tops[5] > 70.0, "{tops:?}");
 }
 
 #[test]

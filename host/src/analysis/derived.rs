@@ -15,7 +15,7 @@ use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values, View};
 use from_data::{Line, Read};
 pub use shape::Value;
-use shape::{HORIZON, brightest, crossing};
+use shape::{HORIZON, crossing, tops};
 
 /// The surface lobe in the plane of incidence, without the other terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,27 +172,46 @@ fn peak(
         }
         Some(gradient)
     };
-    let top = brightest(&ln_f, theta_i, lobe.width());
-    let (at_top, ln_top) = (gradient(top)?, ln_f(top));
-    let f = Real::portable_exp(ln_top);
-    let half = |end: f64| {
-        let theta_s = crossing(|theta_s| ln_f(theta_s) - (ln_top - LN_2), top, end)?;
-        let step = 1e-4 * (theta_s - top);
-        let slope = (ln_f(theta_s + step) - ln_f(theta_s - step)) / (2.0 * step);
-        let here = gradient(theta_s)?;
-        Some((theta_s, Values::from_fn(here.len(), |k| (at_top[k] - here[k]) / slope)))
+    let of_top = |top: f64| {
+        let (at_top, ln_top) = (gradient(top)?, ln_f(top));
+        let half = |end: f64| {
+            let theta_s = crossing(|theta_s| ln_f(theta_s) - (ln_top - LN_2), top, end)?;
+            let step = 1e-4 * (theta_s - top);
+            let slope = (ln_f(theta_s + step) - ln_f(theta_s - step)) / (2.0 * step);
+            let here = gradient(theta_s)?;
+            Some((theta_s, Values::from_fn(here.len(), |k| (at_top[k] - here[k]) / slope)))
+        };
+        let width = half(HORIZON).zip(half(-HORIZON));
+        let width = width.map(|((right, d_right), (left, d_left))| {
+            let gradient = Values::from_fn(d_right.len(), |k| d_right[k] - d_left[k]);
+            Value {
+                value: right - left,
+                stderr: known.stderr_of(&gradient),
+            }
+        });
+        Some((ln_top, at_top, width))
     };
-    let width = half(HORIZON).zip(half(-HORIZON));
-    let width = width.map(|((right, d_right), (left, d_left))| {
-        let gradient = Values::from_fn(d_right.len(), |k| d_right[k] - d_left[k]);
-        Value {
-            value: right - left,
-            stderr: known.stderr_of(&gradient),
+    let (top, others) = tops(&ln_f, theta_i, lobe.width());
+    let (ln_top, at_top, mut width) = of_top(top)?;
+    let f = Real::portable_exp(ln_top);
+    let mut of_ln = known.stderr_of(&at_top);
+    // Another maximum that may be the brightest one changes otherwise with the parameters.
+    for (ln_other, at_other, other) in others.into_iter().filter_map(of_top) {
+        let apart = Values::from_fn(at_top.len(), |k| at_top[k] - at_other[k]);
+        if ln_top - ln_other < factor * known.stderr_of(&apart) {
+            of_ln = of_ln.max(known.stderr_of(&at_other));
+            width = width.zip(other).map(|(width, other)| Value {
+                stderr: width
+                    .stderr
+                    .max(other.stderr)
+                    .max((width.value - other.value).abs() / factor),
+                ..width
+            });
         }
-    });
+    }
     let value = Value {
         value: f,
-        stderr: f * known.stderr_of(&at_top),
+        stderr: f * of_ln,
     };
     let mut peak = Peak {
         theta_s: top,

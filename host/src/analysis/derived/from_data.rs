@@ -9,7 +9,7 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rayon::prelude::*;
 
-use super::shape::{HORIZON, Value, brightest, crossing};
+use super::shape::{HORIZON, Value, crossing, tops};
 use crate::analysis::misfit::lines;
 use crate::analysis::misfit::process::Process;
 use crate::analysis::misfit::smoothed::smoothed;
@@ -80,7 +80,7 @@ impl Line {
     /// The peak of the lobe and its width, of which each standard error is what the difference from the model's adds to the error of that; none where the samples do not reach to half of the peak.
     pub fn peak(&self, material: &Material, lobe: &Material, f: Value, width: Option<Value>) -> Option<Read> {
         let ln_f = |theta_s: f64| self.ln_lobe(material, lobe, theta_s).unwrap_or(f64::NEG_INFINITY);
-        let top = brightest(&ln_f, self.theta_i, lobe.width());
+        let (top, _) = tops(&ln_f, self.theta_i, lobe.width());
         let ln_top = ln_f(top);
         let half = |end: f64| crossing(|theta_s| ln_f(theta_s) - (ln_top - LN_2), top, end);
         let (first, last) = (self.points.first()?.0, self.points.last()?.0);

@@ -50,9 +50,10 @@ pub struct Row {
     pub until: f64,
 }
 
-/// The least costs known of the first scans of a kind, kept in a file of a folder.
+/// The least costs known of some scans of a kind, those from scan 0 on kept in a file of a folder.
 pub struct Known {
-    file: PathBuf,
+    file: Option<PathBuf>,
+    first: u64,
     costs: Vec<f64>,
 }
 
@@ -63,17 +64,25 @@ impl Known {
         let text = fs::read_to_string(&file).unwrap_or_default();
         let cost = |line: &str| line.split(',').next().and_then(|cost| cost.parse().ok());
         let costs = text.lines().map_while(cost).collect();
-        Known { file, costs }
+        Known {
+            file: Some(file),
+            first: 0,
+            costs,
+        }
     }
 
-    /// How many scans it has.
-    pub fn len(&self) -> u64 {
-        self.costs.len() as u64
+    /// None yet, from scan `first` on, and kept in no file.
+    pub fn from(first: u64) -> Self {
+        Known {
+            file: None,
+            first,
+            costs: Vec::new(),
+        }
     }
 
-    /// Has it none?
-    pub fn is_empty(&self) -> bool {
-        self.costs.is_empty()
+    /// The first scan that it does not have.
+    pub fn end(&self) -> u64 {
+        self.first + self.costs.len() as u64
     }
 
     /// Adds the next scan.
@@ -83,33 +92,40 @@ impl Known {
 
     /// Lowers the cost of a scan to what was found.
     pub fn lower(&mut self, k: u64, cost: f64) {
-        if let Some(old) = self.costs.get_mut(k as usize) {
+        if let Some(old) = self.costs.get_mut((k - self.first) as usize) {
             *old = old.min(cost);
         }
     }
 
     /// The least cost of a scan.
     pub fn cost(&self, k: u64) -> f64 {
-        self.costs.get(k as usize).copied().unwrap_or(f64::INFINITY)
+        self.costs
+            .get((k - self.first) as usize)
+            .copied()
+            .unwrap_or(f64::INFINITY)
     }
 
     /// Writes the file.
     pub fn write(&self) {
+        let Some(file) = &self.file else { return };
         let lines: String = self.costs.iter().map(|cost| format!("{cost:e}\n")).collect();
-        if let Some(folder) = self.file.parent() {
+        if let Some(folder) = file.parent() {
             fs::create_dir_all(folder).expect("target is writable");
         }
-        fs::write(&self.file, lines).expect("target is writable");
+        fs::write(file, lines).expect("target is writable");
     }
 }
 
 /// The least cost that thorough methods find: the default search with many candidates, and mixed starts.
 pub fn thorough(kind: Kind, k: u64) -> f64 {
     let task = task(kind, k);
-    let (candidates, starts) = THOROUGH;
-    let found = search_in::<f64>(&task, OTHER_SEED, candidates, 0.0).cost;
     let blocks = blocks::<f64>(&task.samples).expect("scenes are valid");
-    found.min(brute(&Eq14::<f64>::new(&blocks), &bounds(&task), starts, k))
+    many(kind, k).min(brute(&Eq14::<f64>::new(&blocks), &bounds(&task), THOROUGH.1, k))
+}
+
+/// That of the default search with many candidates and a seed of its own.
+pub fn many(kind: Kind, k: u64) -> f64 {
+    search_in::<f64>(&task(kind, k), OTHER_SEED, THOROUGH.0, 0.0).cost
 }
 
 /// The search of scan `k` of a kind with at most `candidates`; `least` is the least cost known.

@@ -372,11 +372,8 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             self.evaluations.linearize += best.step(scene, &self.bounds, &self.options);
             return;
         }
-        // Along a valley it has become slow, by what it remembers of where it came from.
         if best.stop == Some(Stop::Passes) && self.task == Task::Last {
-            *best = Fit::begin(scene, &self.bounds, best.x, &self.options);
-            self.evaluations.linearize += 1;
-            self.task = Task::Again;
+            self.again(scene);
             return;
         }
         // The gradient of an exact fit is rounding.
@@ -385,6 +382,15 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
         self.fits.truncate(0);
         self.fits.push(&Trial { fit: *best, start: 0 });
         self.task = Task::Settle;
+    }
+
+    /// Begins the best once more from where it is: along a valley it has become slow, by what it remembers of where it came from.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn again(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
+        let best = &mut self.ends.best;
+        *best = Fit::begin(scene, &self.bounds, best.x, &self.options);
+        self.evaluations.linearize += 1;
+        self.task = Task::Again;
     }
 
     fn settle(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {

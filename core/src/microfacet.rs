@@ -117,12 +117,17 @@ where
             ln_f: Pack::splat(R::ZERO),
             gradient: [Pack::splat(R::ZERO); P],
         };
-        match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
-            (1, _) => pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
-            (2, false) => pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
-            (2, true) => pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
-            _ => pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows),
+        // What other terms need is not even compiled.
+        if const { lobes(TERMS) == 0 } {
+            pass.write::<0, 0, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows);
+        } else if const { lobes(TERMS) == 1 } {
+            pass.write::<GROUP, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows);
+        } else if const { lobes(TERMS) == 2 && TERMS & SECOND == 0 } {
+            pass.write::<TWO, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows);
+        } else if const { lobes(TERMS) == 2 } {
+            pass.write::<TWO, GROUP, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows);
+        } else {
+            pass.write::<THREE, TWO, GROUP, LANES, C, GRADIENT, P>(block, shifts, lane, &mut rows);
         }
         rows
     }
@@ -136,12 +141,16 @@ where
     fn columns(pass: &Self::Pass, block: &Block<R, LANES, C>, lane: usize) -> [Pack<R, GROUP>; WEIGHTS] {
         const TWO: usize = 2 * GROUP;
         const THREE: usize = 3 * GROUP;
-        match (lobes(TERMS), TERMS & SECOND != 0) {
-            (0, _) => pass.columns::<0, 0, GROUP, LANES, C>(block, lane),
-            (1, _) => pass.columns::<GROUP, GROUP, GROUP, LANES, C>(block, lane),
-            (2, false) => pass.columns::<TWO, TWO, GROUP, LANES, C>(block, lane),
-            (2, true) => pass.columns::<TWO, GROUP, GROUP, LANES, C>(block, lane),
-            _ => pass.columns::<THREE, TWO, GROUP, LANES, C>(block, lane),
+        if const { lobes(TERMS) == 0 } {
+            pass.columns::<0, 0, GROUP, LANES, C>(block, lane)
+        } else if const { lobes(TERMS) == 1 } {
+            pass.columns::<GROUP, GROUP, GROUP, LANES, C>(block, lane)
+        } else if const { lobes(TERMS) == 2 && TERMS & SECOND == 0 } {
+            pass.columns::<TWO, TWO, GROUP, LANES, C>(block, lane)
+        } else if const { lobes(TERMS) == 2 } {
+            pass.columns::<TWO, GROUP, GROUP, LANES, C>(block, lane)
+        } else {
+            pass.columns::<THREE, TWO, GROUP, LANES, C>(block, lane)
         }
     }
 

@@ -133,7 +133,7 @@ fn text_and_report_honour_all() {
 #[test]
 fn profiles_honour_all() {
     let folder = TempDir::new().unwrap();
-    let file = scan(&folder);
+    let file = scan_by(&folder, 8);
     let profile = json(&with_all(&["profile", &file, "--parameter", "n"]));
     let interval = &profile["parameters"][0]["intervals"][1];
     let (low, high) = (interval["low"].as_f64().unwrap(), interval["high"].as_f64().unwrap());
@@ -147,7 +147,6 @@ fn profiles_honour_all() {
         "--bootstrap",
         "20",
     ];
-    let file = scan_by(&folder, 8);
     let shifted = json(&[&["profile", &file, "--parameter", "m"], &parts[..]].concat());
     let interval = &shifted["parameters"][0]["intervals"][1];
     assert!(

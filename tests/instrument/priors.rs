@@ -2,6 +2,7 @@
 
 use super::{PLACE_M, PLACE_N, dielectric, fit, grid, noisy, options};
 use brdfit::analysis::bootstrap::Noise;
+use brdfit::analysis::profile::profiles;
 use brdfit::engine::{self, FitError, FitOptions, Material, Outcome, Prior};
 
 #[test]
@@ -74,5 +75,23 @@ fn a_prior_of_kappa_is_one_of_kappa() {
     for mean in [3.0, 1.0, 0.0] {
         let found = with(mean);
         assert!((found.params[5] - mean).abs() < 0.02, "{mean}: {:?}", found.params);
+    }
+}
+
+#[test]
+fn the_profile_of_a_parameter_with_a_prior_is_that_of_the_fit() {
+    let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 1);
+    let prior = Some(Prior { mean: 1.5, sigma: 0.02 });
+    let asked = options(|options| options.instrument.priors[PLACE_N] = prior);
+    let outcome = fit(&samples, &asked);
+    let (best, error) = (outcome.params[PLACE_N], outcome.uncertainty.stderr[PLACE_N]);
+    let found = profiles(&samples, &asked.settled(&outcome), outcome, &[PLACE_N], 0).unwrap();
+    assert_eq!(found.improved_from, None);
+    let profile = &found.list[0];
+    assert!((profile.best.value / best - 1.0).abs() < 1e-6, "{}", profile.best.value);
+    // Over so little of n the sum of squares is a parabola, whose ends follow from the error.
+    for end in [profile.intervals[0].low, profile.intervals[0].high] {
+        let away = (end.value - best).abs() / (error * profile.limits[0].sqrt());
+        assert!((away - 1.0).abs() < 0.1, "{end:?}: {away}");
     }
 }

@@ -101,9 +101,9 @@ impl FitOptions {
         self.present().filter(|&place| self.lower[place] < self.upper[place])
     }
 
-    /// Those of them that have a prior.
+    /// Places of the parameters that are part of the terms and have a prior; that of a held one counts too, so that the points of its profile have the costs of one sum.
     pub fn with_prior(&self) -> impl Iterator<Item = usize> + '_ {
-        self.free().filter(|&place| self.instrument.priors[place].is_some())
+        self.present().filter(|&place| self.instrument.priors[place].is_some())
     }
 
     /// Number of priors that count.

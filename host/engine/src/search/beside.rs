@@ -46,8 +46,7 @@ impl<'a, const P: usize> Rows<'a, P> {
         let known = |place: usize| {
             let prior = instrument.priors[place]?;
             let coordinate = layout.coordinate(place)?;
-            let free = options.lower[place] < options.upper[place];
-            free.then(|| Known {
+            Some(Known {
                 coordinate,
                 squared: layout.squared() == Some(coordinate),
                 mean: prior.mean,

@@ -1,11 +1,13 @@
 //! Columns of values that are channels: colours, wavelengths, polarisations.
 
 use super::head::Head;
+use super::options::ReadOptions;
 use super::role;
 use super::unit::Unit;
 use super::units::Quantity;
 use super::wavelength;
 use crate::error::{Error, shown};
+use crate::plain::some_of;
 
 /// The name without the quantity in front of it, and that quantity.
 fn tag(plain: &str) -> (&str, Quantity) {
@@ -61,6 +63,33 @@ pub fn refuse_percent(head: &Head) -> Result<(), Error> {
     .help("say which: --quantity brf, or --quantity brdf"))
 }
 
+/// Refuses channels that are called by whole numbers alone which may be wavelengths in micrometres or count.
+///
+/// # Errors
+/// All such numbers are, as in `1,2,3`, and no option says that they are wavelengths.
+pub fn refuse_count(heads: &[Head], channels: &[usize], options: &ReadOptions) -> Result<(), Error> {
+    let bare = channels.iter().filter_map(|&column| {
+        let number: f64 = heads[column]
+            .text
+            .parse()
+            .ok()
+            .filter(|_| heads[column].unit.is_none())?;
+        Some((column, number))
+    });
+    let is_count = |&(_, number): &(usize, f64)| number.fract() == 0.0 && number < 100.0;
+    let bare: Vec<(usize, f64)> = bare.collect();
+    if bare.is_empty() || options.wavelength_unit.is_some() || !bare.iter().all(is_count) {
+        return Ok(());
+    }
+    let names: Vec<String> = bare.iter().map(|&(column, _)| shown(&heads[column].text)).collect();
+    Err(Error::new(format!(
+        "the numbers in the columns {} may be wavelengths in um or count",
+        some_of(&names)
+    ))
+    .at_column(bare[0].0 as u64 + 1)
+    .help("give them a unit, such as 1um, or say --wavelength-unit um; if they count, name them such as brdf_1, or say which column is the values with --columns brdf=3"))
+}
+
 /// What a channel's values are.
 pub fn quantity(head: &Head) -> Quantity {
     tag(&head.plain).1
@@ -85,5 +114,21 @@ pub fn name(head: &Head) -> String {
         },
         _ if role::quantity(&head.plain).is_some() => head.plain.clone(),
         _ => head.text.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_that_may_count_are_no_wavelengths() {
+        let refused = |names: &[&str]| {
+            let heads: Vec<Head> = names.iter().map(|name| Head::new(name)).collect();
+            let all: Vec<usize> = (0..heads.len()).collect();
+            refuse_count(&heads, &all, &ReadOptions::default()).is_err()
+        };
+        assert!(refused(&["1", "2", "3"]) && refused(&["R", "10"]));
+        assert!(!refused(&["450", "550"]) && !refused(&["0.5", "1"]) && !refused(&["1um", "brdf_2", "R"]));
     }
 }

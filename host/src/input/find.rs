@@ -193,7 +193,10 @@ fn angles(
 }
 
 /// What the values of a column are divided by.
-fn divisor(head: &Head, column: usize, options: &ReadOptions) -> Result<f64, Error> {
+///
+/// # Errors
+/// The unit is none of a BRDF, and no option says to take the numbers as they are.
+pub fn divisor(head: &Head, column: usize, options: &ReadOptions) -> Result<f64, Error> {
     match options.value_unit {
         Some(ValueUnit::Percent) => return Ok(100.0),
         Some(ValueUnit::Plain) => return Ok(1.0),

@@ -119,10 +119,11 @@ impl Finder<'_> {
             .map(|place| (place, channel::quantity(&self.heads[place])))
             .collect();
         if channels.is_empty() {
-            Err(self.missing("brdf_per_sr"))
-        } else {
-            Ok(channels)
+            return Err(self.missing("brdf_per_sr"));
         }
+        let places: Vec<usize> = channels.iter().map(|(place, _)| *place).collect();
+        channel::refuse_count(self.heads, &places, options)?;
+        Ok(channels)
     }
 
     /// There is no column of this quantity.
@@ -137,11 +138,7 @@ impl Finder<'_> {
                 shown(&head.text)
             )
         });
-        let through = |head: &&Head| {
-            ["btdf", "transmi", "transmittance"]
-                .iter()
-                .any(|name| head.plain.contains(name))
-        };
+        let through = |head: &&Head| goes_through(head);
         let through = self.heads.iter().find(through).filter(|_| name == "brdf");
         let through = through.map_or(String::new(), |head| {
             format!(
@@ -153,4 +150,9 @@ impl Finder<'_> {
             "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
         ))
     }
+}
+
+/// True of the name of what goes through a sample.
+pub fn goes_through(head: &Head) -> bool {
+    ["btdf", "transmi"].iter().any(|name| head.plain.contains(name))
 }

@@ -19,31 +19,10 @@ fn direction(row: &Row) -> Direction {
 /// # Errors
 /// At the second row of the first such direction.
 pub fn refuse(scan: &RawScan, sheet: &Sheet, columns: &Columns, tells_apart: &[usize]) -> Result<(), Error> {
-    if is_ordered(scan) {
+    let Some(found) = twice(scan, columns.theta_i.is_some()) else {
         return Ok(());
-    }
-    let mut seen: HashMap<Direction, &Row> = HashMap::with_capacity(scan.rows.len());
-    let mut first = None;
-    let mut count = 0;
-    // Rows that are no samples are another fault, which is said of them later.
-    let has_angles = |row: &Row| {
-        // The angle of incidence of a whole file is not known yet.
-        let theta_i = columns.theta_i.map(|_| row.theta_i);
-        let angles = [theta_i, Some(row.theta_s), row.delta_phi];
-        angles.into_iter().flatten().all(f64::is_finite)
     };
-    let is_sample = |row: &&Row| {
-        row.value.is_finite() && has_angles(row) && (row.value > 0.0 || scan.quantity.is_logarithm().is_some())
-    };
-    for row in scan.rows.iter().filter(is_sample) {
-        let known = *seen.entry(direction(row)).or_insert(row);
-        if known.value != row.value {
-            count += 1;
-            first.get_or_insert((known, row));
-        }
-    }
-    let Some((known, row)) = first else { return Ok(()) };
-    let [before, here] = [known, row].map(|row| cells_of(sheet, row.line));
+    let [before, here] = [found.first, found.second].map(|row| cells_of(sheet, row.line));
     if tells_apart.iter().any(|&column| before.get(column) != here.get(column)) {
         return Ok(());
     }
@@ -59,17 +38,60 @@ pub fn refuse(scan: &RawScan, sheet: &Sheet, columns: &Columns, tells_apart: &[u
         ),
         None => "give a column that tells them apart and name it with --split, or take them as repeated measurements with --repeats".to_string(),
     };
-    let more = if count == 1 {
-        String::new()
-    } else {
-        format!(" (and {} rows more)", count - 1)
+    Err(found.error(&help))
+}
+
+/// Two rows of one direction.
+pub struct Twice {
+    first: Row,
+    second: Row,
+    /// How many such rows there are.
+    count: usize,
+}
+
+impl Twice {
+    /// What is said of it, and what to do.
+    pub fn error(&self, help: &str) -> Error {
+        let more = if self.count == 1 {
+            String::new()
+        } else {
+            format!(" (and {} rows more)", self.count - 1)
+        };
+        Error::new(format!(
+            "a direction occurs twice at different values, {} on line {} and {} here{more}",
+            self.first.value, self.first.line, self.second.value
+        ))
+        .at_line(self.second.line)
+        .help(help)
+    }
+}
+
+/// The first direction that occurs twice at different values; the angle of incidence counts if it is known.
+pub fn twice(scan: &RawScan, has_theta_i: bool) -> Option<Twice> {
+    if is_ordered(scan) {
+        return None;
+    }
+    let mut seen: HashMap<Direction, &Row> = HashMap::with_capacity(scan.rows.len());
+    let mut first = None;
+    let mut count = 0;
+    // Rows that are no samples are another fault, which is said of them later.
+    let has_angles = |row: &Row| {
+        // The angle of incidence of a whole file is not known yet.
+        let theta_i = has_theta_i.then_some(row.theta_i);
+        let angles = [theta_i, Some(row.theta_s), row.delta_phi];
+        angles.into_iter().flatten().all(f64::is_finite)
     };
-    Err(Error::new(format!(
-        "a direction occurs twice at different values, {} on line {} and {} here{more}",
-        known.value, known.line, row.value
-    ))
-    .at_line(row.line)
-    .help(help))
+    let is_sample = |row: &&Row| {
+        row.value.is_finite() && has_angles(row) && (row.value > 0.0 || scan.quantity.is_logarithm().is_some())
+    };
+    for row in scan.rows.iter().filter(is_sample) {
+        let known = *seen.entry(direction(row)).or_insert(row);
+        if known.value != row.value {
+            count += 1;
+            first.get_or_insert((*known, *row));
+        }
+    }
+    first.map(|(first, second)| Twice { first, second, count })
 }
 
 /// True if the rows are sweeps that do not meet, which most are, and so need no search.

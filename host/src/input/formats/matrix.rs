@@ -1,14 +1,22 @@
-//! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them; in plane, degrees.
+//! A plain matrix: angles of incidence in the first row, scattering angles in the first column, values between them, or what else the corner cell says.
+
+mod axes;
+mod corner;
+
+use axes::Side;
+use corner::{Axis, Corner};
 
 use crate::error::{Error, shown};
 use crate::input::about::ThetaI;
-use crate::input::facts;
+use crate::input::facts::{self, Facts};
 use crate::input::format::{Format, Reader};
 use crate::input::kind::Kind;
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::repeats;
 use crate::input::rows::{self, Decimal, number_in};
 use crate::input::units::Angles;
+use crate::number::shortest;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -56,66 +64,71 @@ fn angle(cell: &str) -> Option<f64> {
 
 /// The one scan in the matrix; cells that are empty or NaN were not measured.
 ///
-/// Where one axis has azimuths, the options must give the one angle of incidence.
+/// What the corner cell says is obeyed: which angle is along which side, their unit, what the values are.
+/// Where one side has azimuths, a remark or the options must give the one angle of incidence.
 ///
 /// # Errors
-/// A cell is no number, a row is of another length, or there are azimuths and no angle of incidence.
+/// A cell is no number, a row is of another length, the corner is not understood, a direction occurs twice, or the angle of incidence is missing or given twice.
 fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
-    let mut head: Vec<f64> = Vec::new();
-    let mut body: Vec<(u64, f64, Vec<f64>)> = Vec::new();
+    let mut first: Option<(Corner, Side)> = None;
+    let mut side = Side::new(0);
+    let mut body: Vec<(u64, Vec<f64>)> = Vec::new();
     let mut decimal = Decimal::Unknown;
     rows::for_each(text, |line, cells| {
-        let angle = |column: usize| {
-            angle(cells[column]).ok_or_else(|| {
-                Error::new(format!("'{}' is not an angle", shown(cells[column])))
-                    .at_line(line)
-                    .at_column(column as u64 + 1)
-                    .help("write it in degrees, like 20 or 20 deg")
-            })
-        };
-        if head.is_empty() {
-            head = (1..cells.len()).map(angle).collect::<Result<_, _>>()?;
+        let Some((corner, top)) = &first else {
+            let corner = Corner::of(cells[0], options).map_err(|error| error.at_line(line))?;
+            let mut top = Side::new(line);
+            for column in 1..cells.len() {
+                add_angle(&mut top, &corner, cells, column, line)?;
+            }
+            first = Some((corner, top));
             return Ok(());
-        }
-        if cells.len() != head.len() + 1 {
-            let (have, first) = (cells.len(), head.len() + 1);
+        };
+        if cells.len() != top.angles.len() + 1 {
+            let (have, first) = (cells.len(), top.angles.len() + 1);
             return Err(Error::new(format!("the row has {have} cells, the first row {first}"))
                 .at_line(line)
                 .help("leave a cell empty where nothing was measured"));
         }
         let values = (1..cells.len()).map(|column| number_in(cells, column, &mut decimal));
         let values = values.collect::<Result<_, _>>().map_err(|error| error.at_line(line))?;
-        body.push((line, angle(0)?, values));
+        if body.is_empty() {
+            side.line = line;
+        }
+        add_angle(&mut side, corner, cells, 0, line)?;
+        body.push((line, values));
         Ok(())
     })?;
-    if body.is_empty() {
+    let Some((corner, top)) = first.filter(|_| !body.is_empty()) else {
         return Err(Error::new("there are no rows below the angles").help("give one row a scattering angle"));
-    }
-    let axes = Axes::of(&head, &body, options)?;
-    let mut scan = RawScan::new(Vec::new(), Angles::Deg);
+    };
+    let axes = axes::of(corner.names, corner.angles, &side, &top, options)?;
+    let mut scan = RawScan::new(
+        corner.channel.into_iter().collect(),
+        corner.angles.unwrap_or(Angles::Deg),
+    );
+    scan.quantity = corner.quantity;
     scan.about.kind = Kind::Matrix;
-    scan.about.angles_named = false;
-    if let Axes::Azimuths { .. } = axes {
-        scan.about.theta_i = ThetaI::Missing {
-            remark: None,
-            names: [].into(),
-        };
-        scan.about
-            .notes
-            .push("one axis of the matrix has azimuths, 180 being forward".to_string());
+    scan.about.divisor = corner.divisor;
+    scan.about.angles_named = corner.angles.is_some();
+    if axes.contains(&Axis::Azimuth) {
+        scan.about.theta_i = one_theta_i(text, axes, [&side, &top], scan.angles, options)?;
+        let note = "one axis of the matrix has azimuths, 180 being forward";
+        scan.about.notes.push(note.to_string());
+    } else {
+        let incidence = if axes[0] == Axis::Incidence { &side } else { &top };
+        refuse_remark(text, incidence, scan.angles)?;
     }
-    for (line, side, values) in body {
-        for (&top, value) in head.iter().zip(values) {
-            let (theta_i, theta_s, delta_phi) = match axes {
-                Axes::Incidence { above: true } => (top, side, None),
-                Axes::Incidence { above: false } => (side, top, None),
-                Axes::Azimuths { above: true } => (f64::NAN, side, Some(top)),
-                Axes::Azimuths { above: false } => (f64::NAN, top, Some(side)),
+    for (&side, (line, values)) in side.angles.iter().zip(body) {
+        for (&top, value) in top.angles.iter().zip(values) {
+            let at = |axis: Axis| {
+                let found = axes.iter().zip([side, top]).find(|(known, _)| **known == axis);
+                found.map(|(_, angle)| angle)
             };
             scan.rows.push(Row {
-                theta_i,
-                theta_s,
-                delta_phi,
+                theta_i: at(Axis::Incidence).unwrap_or(f64::NAN),
+                theta_s: at(Axis::Scattering).unwrap_or(f64::NAN),
+                delta_phi: at(Axis::Azimuth),
                 value,
                 weight: Weight::Unknown,
                 line,
@@ -123,43 +136,92 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         }
     }
     scan.rows.retain(|row| !row.value.is_nan());
+    if !options.repeats
+        && let Some(twice) = repeats::twice(&scan, !axes.contains(&Axis::Azimuth))
+    {
+        return Err(twice.error("leave one out, or take them as repeated measurements with --repeats"));
+    }
     Ok(vec![scan])
 }
 
-/// What the two axes of a matrix are.
-enum Axes {
-    /// Angles of incidence, in the first row or else in the first column, and scattering angles.
-    Incidence { above: bool },
-    /// Azimuths, in the first row or else in the first column, and scattering angles; the angle of incidence is one.
-    Azimuths { above: bool },
+/// Adds the angle in a cell to those of its side.
+fn add_angle(side: &mut Side, corner: &Corner, cells: &[&str], column: usize, line: u64) -> Result<(), Error> {
+    let cell = cells[column];
+    let at = |error: Error| error.at_line(line).at_column(column as u64 + 1);
+    let bare = rows::parse(cell, Decimal::Unknown).is_some();
+    let found = angle(cell).filter(|angle| angle.abs() <= 360.0).ok_or_else(|| {
+        at(Error::new(format!("'{}' is not an angle", shown(cell))).help("write it in degrees, like 20 or 20 deg"))
+    })?;
+    if !bare && corner.angles == Some(Angles::Rad) {
+        let what = "some angles are in degrees and some in radians";
+        return Err(at(
+            Error::new(what).help("give all in one unit, and name it in the corner")
+        ));
+    }
+    side.sure &= !bare;
+    side.incidence |= !bare && cell.starts_with(char::is_alphabetic);
+    side.angles.push(found);
+    Ok(())
 }
 
-impl Axes {
-    /// Angles of incidence are in the first row, unless that has negative angles and the first column has none, for an angle of incidence is seldom negative.
-    ///
-    /// # Errors
-    /// There are azimuths, and no angle of incidence is given.
-    fn of(head: &[f64], body: &[(u64, f64, Vec<f64>)], options: &ReadOptions) -> Result<Axes, Error> {
-        // A polar angle is within 90 degrees, or beyond 270 where a file counts from 0 to 360.
-        let is_azimuth = |angle: &f64| (angle.abs() + 1e-9) % 360.0 > 90.1 && angle.abs() % 360.0 < 269.9;
-        let above = head.iter().any(is_azimuth);
-        let Some(first) = body.iter().find(|row| above || is_azimuth(&row.1)) else {
-            let turned = head.iter().any(|&angle| angle < 0.0) && body.iter().all(|row| row.1 >= 0.0);
-            return Ok(Axes::Incidence { above: !turned });
+/// Where the one angle of incidence of a matrix with azimuths is from.
+fn one_theta_i(
+    text: &str,
+    axes: [Axis; 2],
+    sides: [&Side; 2],
+    unit: Angles,
+    options: &ReadOptions,
+) -> Result<ThetaI, Error> {
+    let remark = remarks(text).one_theta_i()?;
+    if options.theta_i.is_empty() && remark.is_none() {
+        let at = usize::from(axes[1] == Axis::Azimuth);
+        let place = ["rows", "columns"][at];
+        let why = if sides[at].has_azimuths(options.angles.unwrap_or(unit)) {
+            "at angles of more than 90 degrees, so they are azimuths"
+        } else {
+            "azimuths by the corner cell,"
         };
-        if !options.theta_i.is_empty() {
-            return Ok(Axes::Azimuths { above });
-        }
-        let side = if above { "columns" } else { "rows" };
-        Err(Error::new(format!("the {side} are at angles of more than 90 degrees, so they are azimuths and the matrix is of one angle of incidence"))
-            .at_line(if above { first.0.saturating_sub(1).max(1) } else { first.0 })
-            .help("give it in degrees with --theta-i 20; an azimuth of 180 is forward, or 0 with --forward negative"))
+        return Err(Error::new(format!(
+            "the {place} are {why} and the matrix is of one angle of incidence"
+        ))
+        .at_line(sides[at].line)
+        .help("give it in degrees with --theta-i 20; an azimuth of 180 is forward, or 0 with --forward negative"));
     }
+    Ok(ThetaI::Missing {
+        remark,
+        names: [].into(),
+    })
+}
+
+/// What the remarks of a matrix say.
+fn remarks(text: &str) -> Facts {
+    let lines = rows::lines(text).filter(|(_, _, line)| line.trim_start().starts_with('#'));
+    Facts::of(lines.map(|(number, _, line)| (number, line)))
+}
+
+/// Refuses a remark that says another angle of incidence than the matrix.
+fn refuse_remark(text: &str, incidence: &Side, unit: Angles) -> Result<(), Error> {
+    let said = remarks(text).theta_i;
+    let has = |said: f64, angle: f64| (said - unit.degrees(angle)).abs() < 0.05;
+    let all = |angle: f64| said.iter().any(|&(_, said)| has(said, angle));
+    let Some(&(line, degrees)) = said
+        .first()
+        .filter(|_| !incidence.angles.iter().all(|&angle| all(angle)))
+    else {
+        return Ok(());
+    };
+    Err(Error::new(format!(
+        "a remark says that theta_i is {} degrees, and the matrix has angles of incidence along one side",
+        shortest(degrees)
+    ))
+    .at_line(line)
+    .help("remove the remark if they are; else write a table, one value a row, with theta_s, brdf and a column for what they are"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::units::Quantity;
 
     fn read(text: &str) -> Result<Vec<RawScan>, Error> {
         super::read(text, &ReadOptions::default())
@@ -204,8 +266,8 @@ mod tests {
     #[test]
     fn azimuths_are_told_from_angles_of_incidence() {
         for text in [
-            "t/p -180 0 180\n0 1 2 3\n10 4 5 6\n",
-            "t/p 0 10\n0 1 2\n120 3 4\n240 5 6\n",
+            "theta/phi -180 0 180\n0 1 2 3\n10 4 5 6\n",
+            "angle 0 10\n0 1 2\n120 3 4\n240 5 6\n",
         ] {
             let error = read(text).unwrap_err().to_string();
             assert!(error.contains("azimuths") && error.contains("--theta-i"), "{error}");
@@ -221,7 +283,10 @@ mod tests {
             );
         }
         // Scattering angles of a full turn are none.
-        assert_eq!(read("a 10 20\n280 1 2\n0 3 4\n80 5 6\n").unwrap()[0].rows.len(), 6);
+        assert_eq!(
+            read("theta_s 10 20\n280 1 2\n0 3 4\n80 5 6\n").unwrap()[0].rows.len(),
+            6
+        );
     }
 
     #[test]
@@ -239,5 +304,80 @@ mod tests {
         let error = read(",10,20\n1,2,x\n").unwrap_err();
         assert_eq!((error.line, error.column), (Some(2), Some(3)));
         assert!(read(",10,20\n").is_err());
+    }
+
+    #[test]
+    fn the_corner_is_obeyed() {
+        let rows = |text: &str| {
+            let scan = read(text).unwrap().remove(0);
+            let rows = scan.rows.iter().map(|row| (row.theta_i, row.theta_s, row.value));
+            (scan.quantity, scan.about.divisor, rows.collect::<Vec<_>>())
+        };
+        let turned = rows("theta_i\\theta_s,5,70\n10,1,2\n30,3,4\n").2;
+        assert_eq!(
+            turned,
+            [(10.0, 5.0, 1.0), (10.0, 70.0, 2.0), (30.0, 5.0, 3.0), (30.0, 70.0, 4.0)]
+        );
+        let (quantity, divisor, first) = rows("BRF (%),10,60\n-80,50,25\n80,10,20\n");
+        assert_eq!(
+            (quantity, divisor, first[0]),
+            (Quantity::Brf, 100.0, (10.0, -80.0, 50.0))
+        );
+        let radians = read("theta_s [rad],0.2,0.8\n-1.2,1,2\n1.2,3,4\n").unwrap().remove(0);
+        assert_eq!((radians.angles, radians.about.angles_named), (Angles::Rad, true));
+        let azimuths = read("# AOI: 45\nphi,-80,80\n0,1,2\n30,3,4\n").unwrap().remove(0);
+        assert_eq!(
+            (azimuths.rows[3].theta_s, azimuths.rows[3].delta_phi),
+            (80.0, Some(30.0))
+        );
+        assert!(matches!(
+            azimuths.about.theta_i,
+            ThetaI::Missing { remark: Some(45.0), .. }
+        ));
+        for (text, line, column, what) in [
+            ("# x\nrun,-80,80\n1,1,2\n2,1,2\n", 2, Some(1), "no angle"),
+            (
+                "theta_s (rad),10 deg,60 deg\n-1,1,2\n1,1,2\n",
+                1,
+                Some(2),
+                "some in radians",
+            ),
+            (
+                "# AOI: 45\ntheta_s,20,60\n-80,1,2\n80,1,2\n",
+                1,
+                None,
+                "a remark says that theta_i is 45",
+            ),
+            (",-80,80\n550,1,2\n650,1,2\n", 2, Some(1), "'550' is not an angle"),
+            ("theta_s,1,2,3\n-80,1,1,1\n80,1,1,1\n", 1, None, "wavelengths or count"),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(error.what.contains(what) && error.help.is_some(), "{error}");
+            assert_eq!((error.line, error.column), (Some(line), column), "{error}");
+        }
+        // A remark that says the same is none too many.
+        assert!(read("# AOI: 45\ntheta_s,45\n-80,1\n80,1\n").is_ok());
+    }
+
+    #[test]
+    fn a_direction_that_occurs_twice_is_refused() {
+        for text in [
+            "theta_s,20,20\n-80,1,2\n80,1,1\n",
+            "theta_s,20,60\n0,1,2\n80,1,1\n0,2,2\n",
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(
+                error
+                    .what
+                    .contains("a direction occurs twice at different values, 1 on line 2"),
+                "{error}"
+            );
+            let repeats = ReadOptions {
+                repeats: true,
+                ..ReadOptions::default()
+            };
+            assert!(super::read(text, &repeats).is_ok());
+        }
+        assert!(read("theta_s,20,20\n-80,1,1\n80,1,1\n").is_ok());
     }
 }

@@ -1,0 +1,292 @@
+//! What the corner cell of a matrix says: which angle is along which side, in which unit, and what the values are.
+
+use crate::error::{Error, shown};
+use crate::input::head::Head;
+use crate::input::options::ReadOptions;
+use crate::input::role::{self, Role};
+use crate::input::unit::Unit;
+use crate::input::units::{Angles, Quantity};
+use crate::input::{channel, find, finder, uncertainty};
+
+/// What a side of a matrix holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Angles of incidence.
+    Incidence,
+    /// Scattering angles.
+    Scattering,
+    /// Azimuths of scattering less that of incidence.
+    Azimuth,
+}
+
+/// The sides that the corner names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Names {
+    /// None.
+    Neither,
+    /// One of them; which, the numbers tell.
+    One(Axis),
+    /// Both.
+    Both {
+        /// That of the first column.
+        side: Axis,
+        /// That of the first row.
+        top: Axis,
+    },
+}
+
+/// What the corner cell says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corner {
+    /// The sides that it names.
+    pub names: Names,
+    /// The unit of the angles, if it names one.
+    pub angles: Option<Angles>,
+    /// What the values are.
+    pub quantity: Quantity,
+    /// What they are divided by: 100 for percent.
+    pub divisor: f64,
+    /// The channel that they are of.
+    pub channel: Option<String>,
+}
+
+impl Corner {
+    /// What this cell says: nothing, `theta_s\theta_i`, `theta_s (deg)`, `BRF (%)`, `550 nm`.
+    ///
+    /// # Errors
+    /// It says anything else, or a unit does not fit.
+    pub fn of(text: &str, options: &ReadOptions) -> Result<Corner, Error> {
+        Corner::read(text, options).map_err(|error| error.at_column(1))
+    }
+
+    fn read(text: &str, options: &ReadOptions) -> Result<Corner, Error> {
+        let whole = Head::new(text);
+        let of_angles = |names, angles| -> Result<Corner, Error> {
+            Ok(Corner {
+                names,
+                angles,
+                quantity: Quantity::Brdf,
+                divisor: find::divisor(&Head::new(""), 0, options)?,
+                channel: None,
+            })
+        };
+        if is_empty(text) {
+            return of_angles(Names::Neither, None);
+        }
+        if let Some((names, heads)) = pair(text) {
+            return of_angles(names, unit_of_angles(&heads, options)?);
+        }
+        if let Some(names) = one(&whole) {
+            return of_angles(names, unit_of_angles(&[whole], options)?);
+        }
+        values(&whole, options)
+    }
+}
+
+/// True of a cell without a word: of marks alone, of what stands for no number, and of the name that pandas gives.
+fn is_empty(text: &str) -> bool {
+    let word = text.to_lowercase();
+    !text.contains(|c: char| c.is_alphanumeric() || "%°‰".contains(c))
+        || ["nan", "n/a", "na", "null", "none", "unnamed: 0"].contains(&word.as_str())
+}
+
+/// The two sides in a text such as `theta_s\theta_i`, `theta/phi [deg]`, `theta_i → / theta_s ↓`.
+fn pair(text: &str) -> Option<(Names, [Head; 2])> {
+    let marks = text.char_indices().filter(|&(_, c)| r"\/|,;".contains(c));
+    marks.into_iter().find_map(|(at, mark)| {
+        let (first, second) = (&text[..at], &text[at + mark.len_utf8()..]);
+        let heads = [Head::new(first), Head::new(second)];
+        let roles = [role::role(&heads[0]), role::role(&heads[1])];
+        let axes = match roles.map(axis) {
+            [Some(first), Some(second)] if first != second => [first, second],
+            // The other direction of two is that of scattering.
+            [None, Some(second)] if roles[0] == Role::Theta && second != Axis::Scattering => [Axis::Scattering, second],
+            [Some(first), None] if roles[1] == Role::Theta && first != Axis::Scattering => [first, Axis::Scattering],
+            _ => return None,
+        };
+        if !axes.contains(&Axis::Scattering) {
+            return None;
+        }
+        // The first is of the column below, if no arrow says otherwise.
+        let turned = first.contains('→') || second.contains('↓');
+        let (side, top) = if turned { (axes[1], axes[0]) } else { (axes[0], axes[1]) };
+        Some((Names::Both { side, top }, heads))
+    })
+}
+
+/// The side of a role, if it is an angle that says of which direction.
+fn axis(role: Role) -> Option<Axis> {
+    match role {
+        Role::ThetaI => Some(Axis::Incidence),
+        Role::ThetaS => Some(Axis::Scattering),
+        Role::Phi | Role::PhiS | Role::DeltaPhi => Some(Axis::Azimuth),
+        _ => None,
+    }
+}
+
+/// The side that a single name names; an angle of no direction, and a unit alone, name neither.
+fn one(head: &Head) -> Option<Names> {
+    let role = role::role(head);
+    let is_angle = role == Role::Theta || matches!(Unit::parse(&head.text), Some(Unit::Deg | Unit::Rad));
+    axis(role).map(Names::One).or(is_angle.then_some(Names::Neither))
+}
+
+/// The unit of the angles that these name.
+fn unit_of_angles(heads: &[Head], options: &ReadOptions) -> Result<Option<Angles>, Error> {
+    let mut known = None;
+    for head in heads {
+        let unit = match head.unit.or_else(|| Unit::parse(&head.text)) {
+            None => continue,
+            Some(Unit::Deg) => Angles::Deg,
+            Some(Unit::Rad) => Angles::Rad,
+            Some(_) if options.angles.is_some() => continue,
+            Some(_) => {
+                let what = format!("'{}' is neither in degrees nor in radians", shown(&head.text));
+                return Err(Error::new(what).help("convert it, or say with --angles deg or --angles rad what it is"));
+            }
+        };
+        if *known.get_or_insert(unit) != unit {
+            return Err(Error::new("some angles are in degrees and some in radians").help("give all in one unit"));
+        }
+    }
+    Ok(known)
+}
+
+/// A corner that says what the values are.
+fn values(head: &Head, options: &ReadOptions) -> Result<Corner, Error> {
+    let name = shown(&head.text);
+    if finder::goes_through(head) {
+        let what = format!("the corner cell says '{name}': this is of light that goes through, and no reflectance");
+        return Err(Error::new(what).help("measure the BRDF"));
+    }
+    let quantity = match role::role(head) {
+        Role::Value(quantity) => Some(quantity),
+        _ => None,
+    };
+    let is_value = |of: String| of.is_empty() || role::quantity(&of).is_some();
+    if quantity.is_none() && uncertainty::of(head).any(is_value) {
+        let what = format!("the corner cell says '{name}': these are uncertainties, and no BRDF");
+        return Err(Error::new(what)
+            .help("give the matrix of the values, or a table with the columns theta_i, theta_s, brdf and sigma"));
+    }
+    let is_channel = quantity.is_none() && channel::is(head);
+    let alone = Unit::parse(&head.text).or(head.unit);
+    let is_unit = matches!(
+        alone,
+        Some(Unit::PerSr | Unit::One | Unit::Multiple | Unit::Percent | Unit::Foreign)
+    );
+    if quantity.is_none() && !is_channel && !is_unit {
+        return Err(not_understood(head));
+    }
+    let head = head.clone().with_unit(&head.text);
+    if options.quantity.is_none() {
+        channel::refuse_percent(&head)?;
+    }
+    Ok(Corner {
+        names: Names::Neither,
+        angles: None,
+        quantity: quantity.unwrap_or_else(|| channel::quantity(&head)),
+        divisor: find::divisor(&head, 0, options)?,
+        channel: is_channel.then(|| channel::name(&head)),
+    })
+}
+
+/// What is said of a corner that is none of these.
+fn not_understood(head: &Head) -> Error {
+    let name = shown(&head.text);
+    match role::role(head) {
+        Role::Wavelength | Role::Polarisation | Role::Sample | Role::Repeat => Error::new(format!(
+            "the corner cell says '{name}', which is no angle, and a matrix has angles along both sides"
+        ))
+        .help("write a table, one value a row, with a column for that beside theta_i, theta_s and brdf"),
+        _ => Error::new(format!(
+            "the corner cell '{name}' is understood neither as the angles along the sides nor as the values"
+        ))
+        .help(r"write there what the first column and the first row are, such as theta_s\theta_i, or what the values are, such as BRDF, or nothing"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(text: &str) -> Result<Corner, Error> {
+        Corner::of(text, &ReadOptions::default())
+    }
+
+    #[test]
+    fn names_of_sides_and_their_unit() {
+        use Axis::{Azimuth, Incidence, Scattering};
+        let both = |side, top| Names::Both { side, top };
+        for (text, names, angles) in [
+            ("", Names::Neither, None),
+            ("NaN", Names::Neither, None),
+            ("Unnamed: 0", Names::Neither, None),
+            ("angle (°)", Names::Neither, Some(Angles::Deg)),
+            ("deg", Names::Neither, Some(Angles::Deg)),
+            ("theta_s [rad]", Names::One(Scattering), Some(Angles::Rad)),
+            ("AOI", Names::One(Incidence), None),
+            ("phi", Names::One(Azimuth), None),
+            (r"theta_s\theta_i", both(Scattering, Incidence), None),
+            (
+                "theta_i / theta_r (deg)",
+                both(Incidence, Scattering),
+                Some(Angles::Deg),
+            ),
+            ("theta_i → / theta_s ↓", both(Scattering, Incidence), None),
+            (
+                "scatter angle/deg, AOI/deg",
+                both(Scattering, Incidence),
+                Some(Angles::Deg),
+            ),
+            ("theta/phi", both(Scattering, Azimuth), None),
+            (r"raa\zenith", both(Azimuth, Scattering), None),
+            (r"theta\theta_i", both(Scattering, Incidence), None),
+        ] {
+            let found = corner(text).unwrap();
+            assert_eq!((found.names, found.angles), (names, angles), "{text}");
+        }
+    }
+
+    #[test]
+    fn values_are_those_of_tables() {
+        for (text, quantity, divisor) in [
+            ("BRDF (1/sr)", Quantity::Brdf, 1.0),
+            ("BRF", Quantity::Brf, 1.0),
+            ("reflectance factor (%)", Quantity::Brf, 100.0),
+            ("CCBRDF", Quantity::BrdfCos, 1.0),
+            ("ln(BRDF)", Quantity::LnBrdf, 1.0),
+            ("1/sr", Quantity::Brdf, 1.0),
+        ] {
+            let found = corner(text).unwrap();
+            assert_eq!((found.quantity, found.divisor), (quantity, divisor), "{text}");
+        }
+        assert_eq!(corner("550 nm").unwrap().channel.as_deref(), Some("550 nm"));
+    }
+
+    #[test]
+    fn what_is_not_understood_is_refused() {
+        for (text, what) in [
+            ("BTDF", "goes through"),
+            ("sigma", "uncertainties"),
+            ("uncertainty", "uncertainties"),
+            ("theta_s (gon)", "neither in degrees nor"),
+            (r"theta_s (deg)\theta_i (rad)", "some in radians"),
+            ("wavelength (um)", "no angle"),
+            ("run", "no angle"),
+            ("sample", "no angle"),
+            ("time (s)", "understood neither"),
+            ("temperature", "understood neither"),
+            ("elevation", "understood neither"),
+            ("relative angle to specular", "understood neither"),
+            ("beta-beta0", "understood neither"),
+            (r"theta_i\phi", "understood neither"),
+            ("counts", "not in sr^-1"),
+            ("R (%)", "in percent"),
+        ] {
+            let error = corner(text).unwrap_err();
+            assert!(error.what.contains(what) && error.help.is_some(), "{text}: {error}");
+            assert_eq!(error.column, Some(1));
+        }
+    }
+}

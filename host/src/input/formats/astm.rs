@@ -1,8 +1,11 @@
 //! ASTM E1392 and E2387 text: `KEY value` lines up to `VARS`, then rows of comma-separated numbers, angles in radians.
 
+mod values;
+
 use crate::error::{Error, shown};
+use crate::input::columns::WeightKind;
 use crate::input::format::{Format, Reader};
-use crate::input::head::plain;
+use crate::input::head::{Head, plain};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::number;
@@ -35,11 +38,11 @@ fn vars(text: &str) -> Option<(usize, &str)> {
         .find_map(|(place, line)| Some((place, line.strip_prefix("VARS")?.trim())))
 }
 
-/// One scan for each column of values.
+/// One scan for each column of values; `MEAS_NAME` and their names say what they are.
 ///
 /// # Errors
-/// A variable or a number is missing, or there are other than `NUM_POINTS` rows.
-fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
+/// A variable or a number is missing, one is not understood, or there are other than `NUM_POINTS` rows.
+fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let Some((header, vars)) = vars(text) else {
         return Err(Error::new("there is no line VARS").help("name the columns in it, such as VARS theta_i,theta_s,R"));
     };
@@ -62,25 +65,31 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     let theta_i = place(&THETA_I).ok_or_else(|| missing("theta_i"))?;
     let theta_s = place(&THETA_S).ok_or_else(|| missing("theta_s"))?;
     let (phi_i, phi_s) = (place(&PHI_I), place(&PHI_S));
-    let angles = [Some(theta_i), Some(theta_s), phi_i, phi_s];
-    let values: Vec<usize> = (0..names.len()).filter(|k| !angles.contains(&Some(*k))).collect();
+    let angles: Vec<usize> = [Some(theta_i), Some(theta_s), phi_i, phi_s]
+        .into_iter()
+        .flatten()
+        .collect();
+    let heads: Vec<Head> = names.iter().map(|name| Head::new(name)).collect();
+    let values =
+        values::of(&heads, &angles, values::said(text)?, options).map_err(|error| error.at_line(header as u64 + 1))?;
     if values.is_empty() {
         return Err(missing("column of values"));
     }
     let mut scans: Vec<RawScan> = values
         .iter()
-        .map(|&value| {
+        .map(|value| {
             let column = |place: usize| place as u64 + 1;
-            RawScan {
-                places: Places {
-                    theta_i: Some(column(theta_i)),
-                    theta_s: Some(column(theta_s)),
-                    phi: phi_s.map(column),
-                    value: Some(column(value)),
-                    weight: None,
-                },
-                ..RawScan::new(vec![names[value].to_string()], Angles::Rad)
-            }
+            let mut scan = RawScan::new(vec![names[value.column].to_string()], Angles::Rad);
+            scan.quantity = value.quantity;
+            scan.about.divisor = value.divisor;
+            scan.places = Places {
+                theta_i: Some(column(theta_i)),
+                theta_s: Some(column(theta_s)),
+                phi: phi_s.map(column),
+                value: Some(column(value.column)),
+                weight: value.weight.map(|(place, _)| column(place)),
+            };
+            scan
         })
         .collect();
     for (line, row) in rows() {
@@ -99,13 +108,16 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
                 Some(_) => Some(angle(phi_s)? - angle(phi_i)?),
                 None => None,
             };
-            for (scan, &value) in scans.iter_mut().zip(&values) {
+            for (scan, value) in scans.iter_mut().zip(&values) {
                 scan.rows.push(Row {
                     theta_i: number(&cells, theta_i)?,
                     theta_s: number(&cells, theta_s)?,
                     delta_phi,
-                    value: number(&cells, value)?,
-                    weight: Weight::Unknown,
+                    value: number(&cells, value.column)?,
+                    weight: match value.weight {
+                        Some((place, kind)) => weight(kind, number(&cells, place)?),
+                        None => Weight::Unknown,
+                    },
                     line,
                 });
             }
@@ -116,6 +128,16 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     }
     check_count(text, header, scans[0].rows.len())?;
     Ok(scans)
+}
+
+/// What a number of this kind says of the uncertainty.
+fn weight(kind: WeightKind, x: f64) -> Weight {
+    match kind {
+        WeightKind::Sigma(coverage) => Weight::Sigma(x / coverage),
+        WeightKind::RelativeSigma(coverage) => Weight::RelativeSigma(x / coverage),
+        WeightKind::PercentSigma(coverage) => Weight::RelativeSigma(x / coverage / 100.0),
+        WeightKind::Factor => Weight::Factor(x),
+    }
 }
 
 /// Names the azimuths where VARS forgets them and the rows have them: each stands behind its polar angle.
@@ -168,6 +190,7 @@ fn check_count(text: &str, header: usize, rows: usize) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::units::Quantity;
 
     fn read(text: &str) -> Result<Vec<RawScan>, Error> {
         super::read(text, &ReadOptions::default())
@@ -228,5 +251,45 @@ mod tests {
         let in_plane = "VARS theta_i,theta_s,R\n0.5,-0.4,0.1\n";
         assert_eq!(read(in_plane).unwrap()[0].rows[0].delta_phi, None);
         assert!(read(&in_plane.replace("0.1", "0.1,2")).is_err());
+    }
+
+    #[test]
+    fn names_say_what_the_values_are() {
+        let first = |vars: &str, name: &str| {
+            let text = TEXT.replace("LAB_NAME nowhere", name).replace("R,G", vars);
+            read(&text).map(|scans| {
+                let scan = &scans[0];
+                (scan.quantity, scan.about.divisor, scan.rows[0].weight, scans.len())
+            })
+        };
+        let plain = |quantity, divisor| (quantity, divisor, Weight::Unknown, 2);
+        assert_eq!(first("R,G", "MEAS_NAME BRDF").unwrap(), plain(Quantity::Brdf, 1.0));
+        assert_eq!(first("525nm,650nm", "MEAS_NAME x").unwrap(), plain(Quantity::Brdf, 1.0));
+        assert_eq!(first("R,G", "MEAS_NAME CCBRDF").unwrap(), plain(Quantity::BrdfCos, 1.0));
+        assert_eq!(
+            first("R (%),G (%)", "MEAS_NAME BRDF").unwrap(),
+            plain(Quantity::Brdf, 100.0)
+        );
+        let weighted = first("R,sigma", "MEAS_NAME BRDF").unwrap();
+        assert_eq!((weighted.2, weighted.3), (Weight::Sigma(0.2), 1));
+        assert_eq!(first("BRF,u (%)", "NOTE x").unwrap().2, Weight::RelativeSigma(0.002));
+        for (vars, name, line, column, what) in [
+            ("R,BTDF", "MEAS_NAME BRDF", 4, Some(6), "transmission"),
+            ("R,G", "MEAS_NAME BTDF", 1, None, "transmission"),
+            (
+                "BRDF,G",
+                "MEAS_NAME CCBRDF",
+                4,
+                Some(5),
+                "MEAS_NAME says that the values are",
+            ),
+            ("lambda,R", "MEAS_NAME BRDF", 4, Some(5), "no value"),
+            ("R (%),G", "NOTE x", 4, Some(5), "in percent"),
+            ("R,signal (mV)", "NOTE x", 4, Some(6), "not in sr^-1"),
+        ] {
+            let error = first(vars, name).unwrap_err();
+            assert!(error.what.contains(what) && error.help.is_some(), "{error}");
+            assert_eq!((error.line, error.column), (Some(line), column), "{error}");
+        }
     }
 }

@@ -1,0 +1,111 @@
+//! Which variables of ASTM text are values, what they are, and how sure they are.
+
+use crate::error::{Error, shown};
+use crate::input::columns::Value;
+use crate::input::head::{Head, plain};
+use crate::input::options::ReadOptions;
+use crate::input::role::{self, Look, Role};
+use crate::input::unit::Unit;
+use crate::input::units::Quantity;
+use crate::input::{channel, find, finder, uncertainty};
+
+/// The values among the variables, each with its uncertainty; `angles` are the places of the angles, and `said` is what `MEAS_NAME` says.
+///
+/// # Errors
+/// A variable is neither an angle nor a value nor the uncertainty of one, or `MEAS_NAME` and `VARS` differ.
+pub fn of(
+    heads: &[Head],
+    angles: &[usize],
+    said: Option<Quantity>,
+    options: &ReadOptions,
+) -> Result<Vec<Value>, Error> {
+    let mut taken: Vec<bool> = (0..heads.len()).map(|place| angles.contains(&place)).collect();
+    let free: Vec<usize> = (0..heads.len()).filter(|&place| !taken[place]).collect();
+    let mut values = Vec::new();
+    for &column in &free {
+        let at = |error: Error| error.at_column(column as u64 + 1);
+        let head = &heads[column];
+        let others = || free.iter().filter(|&&other| other != column);
+        let is_of = |of: String| of.is_empty() || others().any(|&other| heads[other].plain == of);
+        if uncertainty::of(head).any(is_of) {
+            continue;
+        }
+        taken[column] = true;
+        values.push(Value {
+            column,
+            name: Some(head.text.clone()),
+            quantity: quantity(head, said).map_err(at)?,
+            divisor: {
+                if said.is_none() && options.quantity.is_none() {
+                    channel::refuse_percent(head).map_err(at)?;
+                }
+                find::divisor(head, column, options)?
+            },
+            weight: None,
+            angle: None,
+            scan: values.len(),
+        });
+    }
+    for column in uncertainty::assign(heads, &taken, &mut values, options)? {
+        taken[column] = true;
+    }
+    match taken.iter().position(|taken| !taken) {
+        Some(column) if !values.is_empty() => Err(Error::new(format!(
+            "VARS has '{}', an uncertainty that does not say of which value",
+            shown(&heads[column].text)
+        ))
+        .at_column(column as u64 + 1)
+        .help("name the value in it, as in sigma_R")),
+        _ => Ok(values),
+    }
+}
+
+/// What a variable's values are.
+fn quantity(head: &Head, said: Option<Quantity>) -> Result<Quantity, Error> {
+    let name = shown(&head.text);
+    if finder::goes_through(head) {
+        return Err(through(&name));
+    }
+    let other = said.filter(|&said| said != Quantity::Brdf);
+    match (role::role(head), other) {
+        (Role::Value(own), Some(said)) if own != said => Err(Error::new(format!(
+            "VARS says '{name}', and MEAS_NAME says that the values are {}",
+            said.title()
+        ))
+        .help("write in both what the values are")),
+        (Role::Value(own), _) => Ok(own),
+        // Of a channel such as 525nm the length is its wavelength.
+        (Role::Unknown(Look::Other), _) if channel::is(head) || !matches!(head.unit, Some(Unit::Length(_))) => {
+            Ok(said.unwrap_or_else(|| channel::quantity(head)))
+        }
+        _ => Err(Error::new(format!(
+            "VARS has '{name}', which is no value, and no angle that this format has"
+        ))
+        .help("leave it out, and give what it tells apart files of their own")),
+    }
+}
+
+/// What is said of transmission.
+fn through(name: &str) -> Error {
+    Error::new(format!("this holds transmission ('{name}'), and no reflection")).help("measure the BRDF")
+}
+
+/// What `MEAS_NAME` says of the values, if it is one of the quantities.
+///
+/// # Errors
+/// It is transmission.
+pub fn said(text: &str) -> Result<Option<Quantity>, Error> {
+    for (line, row) in (1..).zip(text.lines()) {
+        if row.starts_with("VARS") {
+            break;
+        }
+        let Some(name) = row.strip_prefix("MEAS_NAME").map(str::trim) else {
+            continue;
+        };
+        if finder::goes_through(&Head::new(name)) {
+            return Err(through(&shown(name)).at_line(line));
+        }
+        return Ok(role::quantity(&plain(name)));
+    }
+    Ok(None)
+}

@@ -7,11 +7,14 @@ use serde_json::value::RawValue;
 
 use crate::error::{Error, shown};
 use crate::input::bytes::Lines;
+use crate::input::finder;
 use crate::input::format::{Format, Reader};
+use crate::input::head::Head;
 use crate::input::options::ReadOptions;
 use crate::input::raw::{RawScan, Row, Weight};
 use crate::input::unit::Unit;
 use crate::input::units::Angles;
+use crate::input::wavelength;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -29,6 +32,7 @@ fn is(text: &str) -> bool {
 #[derive(Deserialize)]
 struct File<'a> {
     #[serde(borrow)]
+    metadata: Option<&'a RawValue>,
     data: Data<'a>,
 }
 
@@ -44,6 +48,7 @@ struct Data<'a> {
     #[serde(rename = "uBRDF")]
     u_brdf: Option<Variable<'a>>,
     wavelength_i: Option<Variable<'a>>,
+    wavelength_r: Option<Variable<'a>>,
     polarization_i: Option<Variable<'a>>,
     polarization_r: Option<Variable<'a>>,
 }
@@ -79,6 +84,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     })?;
     let data = &file.data;
     let lines = Lines::new(text);
+    refuse_transmission(file.metadata, text, &lines)?;
     let variables = [
         ("theta_i", Some(&data.theta_i)),
         ("phi_i", Some(&data.phi_i)),
@@ -86,6 +92,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         ("phi_r", Some(&data.phi_r)),
         ("uBRDF", data.u_brdf.as_ref()),
         ("wavelength_i", data.wavelength_i.as_ref()),
+        ("wavelength_r", data.wavelength_r.as_ref()),
         ("polarization_i", data.polarization_i.as_ref()),
         ("polarization_r", data.polarization_r.as_ref()),
     ];
@@ -102,6 +109,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new(format!("the unit of BRDF is '{}'", shown(&data.brdf.unit)))
             .help("give values in sr^-1, and say so"));
     }
+    refuse_fluorescence(data, text, &lines)?;
     let weight = uncertainty(data, text, &lines)?;
     let mut scans: Vec<RawScan> = Vec::new();
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
@@ -130,6 +138,59 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new("BRDF has no values").help("give one for each sample"));
     }
     Ok(scans)
+}
+
+/// Refuses a file whose metadata say that it holds transmission.
+fn refuse_transmission(metadata: Option<&RawValue>, text: &str, lines: &Lines) -> Result<(), Error> {
+    #[derive(Deserialize)]
+    struct Metadata<'a> {
+        #[serde(borrow, rename = "type")]
+        kind: &'a RawValue,
+    }
+    // Metadata of another form, or without a type, say nothing of it.
+    let known = metadata.and_then(|raw| serde_json::from_str::<Metadata>(raw.get()).ok());
+    let Some(kind) = known.map(|metadata| metadata.kind) else {
+        return Ok(());
+    };
+    let name = kind.get().trim_matches('"');
+    if !finder::goes_through(&Head::new(name)) {
+        return Ok(());
+    }
+    let (line, column) = lines.place(text, kind.get());
+    let what = format!("metadata say that this is '{}', light that goes through", shown(name));
+    Err(Error::new(what)
+        .at_line(line)
+        .at_column(column)
+        .help("measure the BRDF"))
+}
+
+/// Refuses light that is scattered at another wavelength than it came with.
+fn refuse_fluorescence(data: &Data, text: &str, lines: &Lines) -> Result<(), Error> {
+    let (Some(incident), Some(scattered)) = (&data.wavelength_i, &data.wavelength_r) else {
+        return Ok(());
+    };
+    let of = |variable: &Variable, k: usize| {
+        let number = variable.values[k].get().parse().ok()?;
+        wavelength::nanometres(number, Unit::parse(&variable.unit)).ok()
+    };
+    let differs = |&k: &usize| match (of(incident, k), of(scattered, k)) {
+        (Some(from), Some(to)) => (from - to).abs() > 1e-6 * from,
+        _ => false,
+    };
+    let Some(k) = (0..incident.values.len()).find(differs) else {
+        return Ok(());
+    };
+    let (line, column) = lines.place(text, scattered.values[k].get());
+    let [from, to] = [incident, scattered].map(|variable| format!("{} {}", variable.values[k].get(), variable.unit));
+    let what = format!(
+        "wavelength_r is {} where wavelength_i is {}: this is fluorescence, and no BRDF",
+        shown(&to),
+        shown(&from)
+    );
+    Err(Error::new(what)
+        .at_line(line)
+        .at_column(column)
+        .help("leave such samples out of the file"))
 }
 
 /// The wavelength and the polarisations of sample `k`.
@@ -306,5 +367,20 @@ mod tests {
             assert!(line.is_none_or(|line| error.line == Some(line)), "{error}");
             assert!(column.is_none_or(|column| error.column == Some(column)), "{error}");
         }
+    }
+
+    #[test]
+    fn transmission_and_fluorescence_are_refused() {
+        let typed = |kind: &str| read(&TEXT.replace(r#"{"any": [1]}"#, &format!(r#"{{"type": "{kind}"}}"#)));
+        assert!(typed("BRDF").is_ok() && typed("BSDF").is_ok());
+        let error = typed("BTDF").unwrap_err();
+        assert!(error.line == Some(1) && error.what.contains("goes through"), "{error}");
+        let scattered = |values: &str| {
+            let both = format!("\"wavelength_r\": {{\"unit\": \"um\", \"values\": {values}}},\n\"polarization_i\"");
+            read(&TEXT.replacen("\"polarization_i\"", &both, 1))
+        };
+        assert!(scattered("[0.55, 0.65, 0.55]").is_ok());
+        let error = scattered("[0.55, 0.65, 0.6]").unwrap_err();
+        assert!(error.line == Some(3) && error.what.contains("fluorescence"), "{error}");
     }
 }

@@ -41,6 +41,27 @@ struct Header {
     phi_i: Option<f64>,
     quantity: Option<Quantity>,
     coloured: bool,
+    /// Theta and phi as the remarks since the last row give them.
+    fresh: [Option<f64>; 2],
+}
+
+impl Header {
+    /// Takes theta or phi of incidence, which several remarks above the same rows may give.
+    ///
+    /// # Errors
+    /// They differ.
+    fn incidence(&mut self, is_phi: bool, angle: f64) -> Result<(), Error> {
+        let known = &mut self.fresh[usize::from(is_phi)];
+        if let Some(before) = known.filter(|before| (before - angle) % 360.0 != 0.0) {
+            let name = if is_phi { "phi" } else { "theta" };
+            let what =
+                format!("the remarks give two directions of incidence: {name} is {before} above and {angle} here");
+            return Err(Error::new(what).help("leave the wrong one out"));
+        }
+        *known = Some(angle);
+        *(if is_phi { &mut self.phi_i } else { &mut self.theta_i }) = Some(angle);
+        Ok(())
+    }
 }
 
 /// One scan, or one for each of X, Y and Z.
@@ -61,6 +82,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             continue;
         }
         let (theta_i, phi_i, quantity) = known(&header).map_err(at)?;
+        header.fresh = [None; 2];
         if scans.is_empty() {
             scans = channels(quantity, header.coloured);
         }
@@ -117,12 +139,15 @@ fn remark(line: &str, header: &mut Header) -> Result<(), Error> {
     };
     match key {
         "incident_angle" => {
-            let (theta, phi) = value.split_once([' ', '\t']).unwrap_or((value, "0"));
-            header.theta_i = Some(angle(theta)?);
-            header.phi_i = Some(angle(phi.trim())?);
+            let (theta, phi) = value.split_once([' ', '\t']).unwrap_or((value, ""));
+            header.incidence(false, angle(theta)?)?;
+            match phi.trim() {
+                "" => header.phi_i = header.fresh[1].or(Some(0.0)),
+                phi => header.incidence(true, angle(phi)?)?,
+            }
         }
-        "intheta" => header.theta_i = Some(angle(value)?),
-        "inphi" => header.phi_i = Some(angle(value)?),
+        "intheta" => header.incidence(false, angle(value)?)?,
+        "inphi" => header.incidence(true, angle(value)?)?,
         "colorimetry" => header.coloured = value.eq_ignore_ascii_case("CIE-XYZ"),
         "format" => header.quantity = Some(quantity(value)?),
         _ => {}
@@ -230,6 +255,8 @@ mod tests {
             ("BSDF", "BTDF", Some(3)),
             ("BSDF", "counts", Some(3)),
             ("angle 30", "angle x", Some(4)),
+            ("intheta 30", "intheta 60", Some(5)),
+            ("inphi 90", "inphi 0", Some(6)),
             ("#incident_angle 30 90\n#intheta 30\n", "", Some(6)),
             ("10 270 1", "10 270", Some(8)),
             ("10 270 1", "10 270 y", Some(8)),

@@ -3,7 +3,7 @@
 mod lines;
 mod two_lines;
 
-use lines::{Line, delimiter_of_row, is_head, is_number, is_pair, is_remark, is_row, is_value_of_one, parts};
+use lines::{Line, delimiter_of_row, is_head, is_number, is_pair, is_remark, is_row, is_value_of_one, no_heads, parts};
 use two_lines::{goes_on, joined, names_in_two, over_names};
 
 use super::facts::Facts;
@@ -187,13 +187,7 @@ impl<'a> Sheet<'a> {
                 }
                 (above[place].number, heads)
             }
-            None if options.columns.is_empty() => {
-                return Err(Error::new("there is no header line: the columns have no names")
-                    .at_line(line.number)
-                    .help(
-                        "say what they are, such as --columns theta_i=1,theta_s=2,brdf=3, or name them in a first line",
-                    ));
-            }
+            None if options.columns.is_empty() => return Err(no_heads(line, above.last(), delimiter)),
             None => (line.number, vec![Head::new(""); width]),
         };
         Ok(Sheet {
@@ -333,6 +327,14 @@ mod tests {
             (sheet.facts.one_theta_i().unwrap(), sheet.facts.wavelength),
             (Some(20.0), Some(550.0))
         );
+        for (text, cell) in [
+            ("theta_s,550,650\n-80,1,2\n", "'550'"),
+            ("theta_s,20,45,mean\n-80,1,2,3\n", "'mean'"),
+            ("theta_s,-80,80\nBRDF,1,2\n", "'-80'"),
+        ] {
+            let error = Sheet::find(text, &ReadOptions::default()).unwrap_err();
+            assert!(error.line == Some(1) && error.what.contains(cell), "{error}");
+        }
         let error = Sheet::find(text, &ReadOptions::default()).unwrap_err();
         assert!(
             error.line == Some(4) && error.to_string().contains("--columns"),

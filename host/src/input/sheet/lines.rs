@@ -1,5 +1,6 @@
 //! What a line above the rows or a line of cells may be.
 
+use crate::error::{Error, shown};
 use crate::input::channel;
 use crate::input::head::Head;
 use crate::input::role::{self, Role};
@@ -75,6 +76,34 @@ pub fn is_fact(key: &str, value: &str) -> bool {
 /// True of what every table has: scattering angles, or values.
 pub fn is_table(head: &Head) -> bool {
     matches!(role::role(head), Role::ThetaS | Role::Theta | Role::Value(_))
+}
+
+/// What is said of rows without heads: which word or number in the line that might have them is no name.
+pub fn no_heads(line: Line, above: Option<&Line>, delimiter: Option<u8>) -> Error {
+    for line in [Some(&line), above].into_iter().flatten() {
+        let cells = rows::split(line.text, delimiter);
+        if let Some(cell) = no_name(&cells).filter(|_| !is_pair(&cells)) {
+            return Error::new(format!(
+                "this line begins with '{}', and '{}' in it is not the name of a column",
+                shown(cells[0]),
+                shown(cell)
+            ))
+            .at_line(line.number)
+            .help("name every column, a wavelength with its unit, such as 550 nm; as the first row of a matrix it stands first, has angles of at most 360 degrees and nothing else, and the rows below begin with an angle");
+        }
+    }
+    Error::new("there is no header line: the columns have no names")
+        .at_line(line.number)
+        .help("say what they are, such as --columns theta_i=1,theta_s=2,brdf=3, or name them in a first line")
+}
+
+/// The cell which, in a line that begins with a known name, is none: a word, or else a number.
+fn no_name<'a>(cells: &[&'a str]) -> Option<&'a str> {
+    let (first, others) = cells.split_first()?;
+    let is_known = |cell: &str| !matches!(role::role(&Head::new(cell)), Role::Unknown(_));
+    let word = |cell: &&&str| !cell.is_empty() && !is_number(cell) && !is_known(cell);
+    let found = others.iter().find(word).or(others.iter().find(|cell| is_number(cell)));
+    found.filter(|_| is_known(first)).copied()
 }
 
 /// True of a row of numbers; with `only`, of nothing else.

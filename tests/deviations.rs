@@ -9,6 +9,7 @@ use brdfit::analysis::choose::Wanted;
 use brdfit::analysis::deviations::{Verdict, settled};
 use brdfit::analysis::fit::fit;
 use brdfit::analysis::misfit::coverage_factor;
+use brdfit::analysis::profile::findings::{Asked, find};
 use brdfit::engine::{FitOptions, Material};
 use brdfit::input::{ReadOptions, parse};
 use brdfit_core::brdf::{DIFFUSE, SURFACE};
@@ -86,6 +87,46 @@ fn errors_of_the_file_are_unbiased_and_hold() {
         assert!((0.92..=0.97).contains(&held), "{absolute} {relative}: {held}");
         assert!(used > 0.9, "{absolute} {relative}: {used}");
     }
+}
+
+/// The file states ten times the noise, as one that has the uncertainty of its calibration in each value does.
+#[test]
+fn deviations_that_the_residuals_refute_raise_no_value() {
+    let stated = |line: &str| match line.rsplit_once(',') {
+        Some((rest, "0.02")) => format!("{rest},0.2"),
+        _ => line.to_string(),
+    };
+    let text: Vec<String> = file(0.0, 0.02, "rel_sigma", 1).lines().map(stated).collect();
+    let measurement = parse("scan.csv", text.join("\n").as_bytes(), &ReadOptions::default())
+        .unwrap()
+        .remove(0);
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    let wanted = Wanted::One(options);
+    let scan = fit(&settled(measurement.clone(), &wanted), &wanted).unwrap();
+    let (rho_d, error) = (scan.outcome.params[0], scan.outcome.uncertainty.stderr[0]);
+    // With noise of 20 % the values would be 2 % low.
+    assert!(
+        (rho_d - TRUTH[0]).abs() < 3.0 * error && error < 0.005 * TRUTH[0],
+        "{rho_d} +- {error}"
+    );
+    assert!(matches!(scan.deviations, Some(Verdict::Refuted(ratio)) if (0.07..0.14).contains(&ratio)));
+    // Where the file is believed all the same, so are the intervals of a profile.
+    let mut absolute = measurement;
+    absolute.on_deviations.absolute = true;
+    let asked = Asked {
+        parameters: &["rho_d".to_string()],
+        calibrate: 0,
+        bootstrap: 0,
+    };
+    let found = find(&absolute, &wanted, &asked).unwrap();
+    let [_, wide] = found.profiles[0].intervals;
+    let half = 0.5 * (wide.high.value - wide.low.value) / found.outcome.uncertainty.stderr[0];
+    assert!((1.9..2.05).contains(&half), "{half}");
+    assert!(found.outcome.uncertainty.stderr[0] > 7.0 * error);
 }
 
 /// Made with rho_d 0.1 and noise of 20 %, which here is 1.7 % high on average; deviations over the measured f gave 0.1078 +- 0.0017.

@@ -102,7 +102,7 @@ fn a_profile_that_meets_a_better_fit_goes_on_from_there() {
     (narrow.lower[3], narrow.upper[3]) = (0.01, 0.1);
     let poor = engine::fit(&samples, &narrow).unwrap();
     let before = poor.cost;
-    let found = profiles(&samples, &all, poor, &[3], 0).unwrap();
+    let found = profiles(&samples, &all, poor, &[3], 0, None).unwrap();
     assert_eq!(found.improved_from, Some(before));
     assert!(
         found.outcome.cost < CASES[4].1 * (1.0 + DIGITS),
@@ -133,7 +133,7 @@ fn no_fit_with_a_parameter_held_is_below_the_fit_that_is_profiled() {
         let samples = task(kind, k).samples;
         let poor = engine::fit(&samples, &one_start()).unwrap();
         let all = FitOptions::default();
-        let found = profiles(&samples, &all, poor, &[place], 0).unwrap();
+        let found = profiles(&samples, &all, poor, &[place], 0, None).unwrap();
         for (index, point) in found.list[0].points.iter().enumerate() {
             let mut least = point.cost;
             if index % 5 == 0 {

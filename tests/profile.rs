@@ -53,7 +53,7 @@ fn intervals_end_where_the_cost_has_risen() {
         let (samples, options, outcome) = fitted(name);
         let degrees = outcome.uncertainty.degrees_of_freedom;
         for index in [0, 1, 3] {
-            let profile = profile(&samples, &options, &outcome, index, 0).unwrap();
+            let profile = profile(&samples, &options, &outcome, index, 0, None).unwrap();
             for interval in profile.intervals {
                 for end in [interval.low, interval.high] {
                     assert!(!end.at_bound);
@@ -90,7 +90,7 @@ fn intervals_end_where_the_cost_has_risen() {
 #[test]
 fn flat_valleys_end_at_the_bounds() {
     let (samples, options, outcome) = fitted("testdata1_sym_seed1.csv");
-    let n = profile(&samples, &options, &outcome, 4, 0).unwrap();
+    let n = profile(&samples, &options, &outcome, 4, 0, None).unwrap();
     let both = |profile: &Profile| profile.intervals.map(|at| (at.low.at_bound, at.high.at_bound));
     assert_eq!(both(&n), [(true, true); 2]);
     assert_eq!((n.intervals[1].low.value, n.intervals[1].high.value), (1.0, 100.0));
@@ -100,13 +100,13 @@ fn flat_valleys_end_at_the_bounds() {
     // An optimum on a bound: that is an end.
     let (samples, options, outcome) = fitted("testdata3_sym_seed1.csv");
     assert_eq!(outcome.params[5], 0.0);
-    let kappa = profile(&samples, &options, &outcome, 5, 0).unwrap();
+    let kappa = profile(&samples, &options, &outcome, 5, 0, None).unwrap();
     assert!(kappa.intervals[0].low.at_bound && kappa.intervals[0].low.value == 0.0);
     // A narrow range is respected.
     let mut narrow = options;
     (narrow.lower[3], narrow.upper[3]) = (0.00495, 0.0050);
     let outcome = engine::fit(&samples, &narrow).unwrap();
-    let m = profile(&samples, &narrow, &outcome, 3, 0).unwrap();
+    let m = profile(&samples, &narrow, &outcome, 3, 0, None).unwrap();
     assert_eq!(both(&m), [(true, true); 2]);
     assert!(m.points.iter().all(|point| (0.00495..=0.0050).contains(&point.value)));
 }

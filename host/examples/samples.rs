@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{:6} {value:.5} +- {stderr:.5}  {}", parameter.name, parameter.what);
     }
     let m = Model::paper().place("m").ok_or("there is no m")?;
-    let found = profiles(&scan.samples, &options, fitted.outcome, &[m], 0)?;
+    let found = profiles(&scan.samples, &options, fitted.outcome, &[m], 0, None)?;
     let [_, interval] = found.list[0].intervals;
     println!(
         "m is within {:.5} and {:.5} at 95 %",

@@ -1,9 +1,12 @@
 //! Values that are known from elsewhere.
 
 use super::{PLACE_M, PLACE_N, dielectric, fit, grid, noisy, options};
+use brdfit::analysis;
 use brdfit::analysis::bootstrap::Noise;
+use brdfit::analysis::choose::Wanted;
 use brdfit::analysis::profile::profiles;
 use brdfit::engine::{self, FitError, FitOptions, Material, Outcome, Prior};
+use brdfit::input::Measurement;
 
 #[test]
 fn a_prior_tells_what_the_scan_does_not() {
@@ -79,13 +82,33 @@ fn a_prior_of_kappa_is_one_of_kappa() {
 }
 
 #[test]
+fn a_prior_that_the_scan_contradicts_is_told() {
+    let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 1);
+    let hints = |mean: f64| {
+        let prior = Some(Prior { mean, sigma: 0.001 });
+        let asked = options(|options| options.instrument.priors[PLACE_M] = prior);
+        let scan = Measurement::of_samples("scan", samples.clone(), None);
+        analysis::fit::fit(&scan, &Wanted::One(asked)).unwrap().hints
+    };
+    assert!(hints(0.15).iter().all(|hint| hint.about != "prior"));
+    // Whether it gives way to the scan or the scan to it.
+    for mean in [0.18, 0.3] {
+        assert!(
+            hints(mean)
+                .iter()
+                .any(|hint| hint.about == "prior" && hint.text.contains("without it m is 0.1"))
+        );
+    }
+}
+
+#[test]
 fn the_profile_of_a_parameter_with_a_prior_is_that_of_the_fit() {
     let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, 1);
     let prior = Some(Prior { mean: 1.5, sigma: 0.02 });
     let asked = options(|options| options.instrument.priors[PLACE_N] = prior);
     let outcome = fit(&samples, &asked);
     let (best, error) = (outcome.params[PLACE_N], outcome.uncertainty.stderr[PLACE_N]);
-    let found = profiles(&samples, &asked.settled(&outcome), outcome, &[PLACE_N], 0).unwrap();
+    let found = profiles(&samples, &asked.settled(&outcome), outcome, &[PLACE_N], 0, None).unwrap();
     assert_eq!(found.improved_from, None);
     let profile = &found.list[0];
     assert!((profile.best.value / best - 1.0).abs() < 1e-6, "{}", profile.best.value);

@@ -129,7 +129,7 @@ pub struct Candidate {
     pub p_value: Option<f64>,
 }
 
-/// How a fit was chosen: the least BIC.
+/// How a fit was chosen: the least BIC of those with at least three samples more than parameters, or of all if none has.
 ///
 /// AICc lets in a parameter that nothing needs in one case of six however many samples there are; BIC in one of forty with 170, and in fewer with more.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,9 +176,10 @@ impl Choice {
         self.candidates.iter().filter(|one| one.options.model == model).count() > 1
     }
 
-    /// The least of a number of the candidates.
+    /// The least of a number of the candidates; 0 if it is finite for none.
     pub fn least(&self, of: fn(&Candidate) -> f64) -> f64 {
-        self.candidates.iter().map(of).fold(f64::INFINITY, f64::min)
+        let finite = self.candidates.iter().map(of).filter(|number| number.is_finite());
+        finite.min_by(f64::total_cmp).unwrap_or(0.0)
     }
 }
 
@@ -314,8 +315,8 @@ fn judged(samples: &[Sample<f64>], fitted: Vec<(FitOptions, Outcome)>) -> Result
             p_value,
         });
     }
-    let bic = |place: &usize| candidates[*place].criteria.bic;
-    let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
+    let criteria = |place: &usize| candidates[*place].criteria;
+    let place = (0..candidates.len()).min_by(|a, b| criteria(a).order(&criteria(b)));
     let place = place.ok_or(FitError::Terms(0))?;
     Ok(Choice {
         candidates,
@@ -341,5 +342,15 @@ mod tests {
             (ALL, Some(METAL)),
         ];
         assert_eq!(SETS, sets);
+    }
+
+    #[test]
+    fn no_set_is_chosen_that_any_samples_would_fit() {
+        let sample = |k: u32| Sample::in_plane(0.3, 0.2 * f64::from(k), 0.1 + 0.002 * f64::from(k * k % 3));
+        let samples: Vec<Sample<f64>> = (0..4).map(sample).collect();
+        let choice = choose(&samples, &sets(&FitOptions::default())).unwrap();
+        assert!(choice.candidates.iter().any(|one| one.criteria.saturated));
+        assert_eq!(choice.chosen().options.terms, DIFFUSE);
+        assert!(choice.least(|one| one.criteria.aicc).is_finite());
     }
 }

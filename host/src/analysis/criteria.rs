@@ -1,5 +1,7 @@
 //! What fits of the same samples are compared by.
 
+use std::cmp::Ordering;
+
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
@@ -16,6 +18,8 @@ pub struct Criteria {
     pub parameters: usize,
     /// Samples of weight above 0, over the factor of their correlation.
     pub samples: f64,
+    /// There are not even three samples more than parameters: a fit is near to all of them whatever the model.
+    pub saturated: bool,
     /// Mean squared residual of ln f, but at least what rounding leaves.
     variance: f64,
     /// Akaike's criterion with Hurvich and Tsai's correction; infinite with too few samples.
@@ -39,6 +43,7 @@ impl Criteria {
         precision: Precision,
     ) -> Self {
         let variance = (cost / samples as f64).max(rounding(precision));
+        let saturated = samples < parameters + 3;
         let samples = samples as f64 / inflation.map_or(1.0, |inflation| inflation.factor);
         // The variance of the residuals is a parameter too.
         let k = parameters as f64 + 1.0;
@@ -47,6 +52,7 @@ impl Criteria {
         Criteria {
             parameters,
             samples,
+            saturated,
             variance,
             aicc: if room > 0.0 {
                 deviance + 2.0 * k + 2.0 * k * (k + 1.0) / room
@@ -55,6 +61,12 @@ impl Criteria {
             },
             bic: deviance + k * Real::portable_ln(samples),
         }
+    }
+
+    /// Which is the better: of those that are not saturated before the others, the lower BIC.
+    pub fn order(&self, other: &Criteria) -> Ordering {
+        let saturated = self.saturated.cmp(&other.saturated);
+        saturated.then(self.bic.total_cmp(&other.bic))
     }
 
     /// Probability by chance of at least the fall of the cost from `smaller`, a fit of a model within this one: the F test; `None` if that has as many parameters, or samples leave no degree of freedom.

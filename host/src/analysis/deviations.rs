@@ -5,8 +5,9 @@ use brdfit_core::real::Real;
 
 use super::chance::below_chi2;
 use super::choose::{self, Wanted};
-use crate::engine::Values;
+use super::misfit;
 use crate::engine::uncertainty::Uncertainty;
+use crate::engine::{Outcome, Values};
 use crate::input::Measurement;
 use crate::input::weight::{self, Deviation};
 use crate::number::{percent, two};
@@ -34,7 +35,7 @@ pub enum Verdict {
 /// The scan with weights from its standard deviations over the f of its fit, and with values raised by what their noise takes from ln f on average.
 ///
 /// A deviation over the measured f is too small where noise made f large: such samples count too much, and f comes out high by 1.5 sigma^2 (sigma being relative).
-/// And ln f of a value with symmetric noise is low by sigma^2 / 2 on average, to second order ([`Deviation::of_ln`]).
+/// And ln f of a value with symmetric noise is low by sigma^2 / 2 on average, to second order ([`Deviation::of_ln`]); the noise is no larger than the residuals.
 /// A scan without standard deviations stays as it is, unless its bias is to be corrected; so does one that cannot be fitted.
 pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
     if measurement.sigma_ln.is_none() && measurement.on_deviations.correct_ln_bias {
@@ -44,34 +45,57 @@ pub fn settled(measurement: Measurement, wanted: &Wanted) -> Measurement {
         return measurement;
     }
     let mut now = measurement.clone();
-    // Relative deviations are the same over any f.
-    let (samples, mut unit) = weighted(&measurement, |sample| sample.brdf);
+    let absolute = measurement.deviations.iter().any(|deviation| deviation.absolute != 0.0);
+    let mut part = 1.0;
+    let (samples, mut unit) = weighted(&measurement, |sample| sample.brdf, part);
     now.samples = samples;
-    if measurement.deviations.iter().any(|deviation| deviation.absolute != 0.0) {
-        for _ in 0..ROUNDS {
-            let Ok((_, outcome, _)) = choose::fit(&now.samples, wanted) else {
-                return measurement;
-            };
-            if !outcome.cost.is_finite() {
-                return measurement;
-            }
-            let before: Vec<f64> = now.samples.iter().map(|sample| sample.weight / unit).collect();
-            let view = outcome.view();
-            let f = |sample: &Sample<f64>| view.ln_f(sample).map_or(sample.brdf, Real::portable_exp);
-            (now.samples, unit) = weighted(&measurement, f);
-            let change = now.samples.iter().zip(before);
-            let change = change.map(|(sample, before)| (sample.weight / unit / before - 1.0).abs());
-            if change.fold(0.0, f64::max) < SETTLED {
-                break;
-            }
+    for _ in 0..ROUNDS {
+        let Ok((_, outcome, _)) = choose::fit(&now.samples, wanted) else {
+            return measurement;
+        };
+        if !outcome.cost.is_finite() {
+            return measurement;
+        }
+        let known = &outcome.uncertainty;
+        let (told, before) = (part, now.samples.clone());
+        part = seen(known.scale / unit, known.degrees_of_freedom);
+        // Relative deviations are the same over any f.
+        if !absolute && part == told {
+            break;
+        }
+        let view = outcome.view();
+        let f = |sample: &Sample<f64>| view.ln_f(sample).map_or(sample.brdf, Real::portable_exp);
+        let unit_before = unit;
+        (now.samples, unit) = weighted(&measurement, f, part);
+        let change = now.samples.iter().zip(&before);
+        let change = change.map(|(sample, old)| (sample.weight / unit / (old.weight / unit_before) - 1.0).abs());
+        if change.fold((part / told - 1.0).abs(), f64::max) < SETTLED {
+            break;
         }
     }
     now.sigma_ln = Some(unit);
-    now.about.notes.push(
+    now.about.notes.push(if part == 1.0 {
         "weights are of the standard deviations over the fitted BRDF, and ln BRDF is raised by what noise of their size takes from it on average"
-            .into(),
-    );
+            .into()
+    } else {
+        format!(
+            "weights are of the standard deviations over the fitted BRDF; residuals are {} of them, and ln BRDF is raised by what noise of the size of the residuals takes from it on average",
+            percent(part)
+        )
+    });
     now
+}
+
+/// The part of the standard deviations that residuals of `ratio` times them leave for noise: all of it, unless chi^2 says that it is less.
+///
+/// What a laboratory states can be the uncertainty of its calibration too, which moves all values together and takes nothing from ln f.
+fn seen(ratio: f64, degrees_of_freedom: usize) -> f64 {
+    let degrees = degrees_of_freedom as f64;
+    if degrees_of_freedom > 0 && ratio < 1.0 && 2.0 * below_chi2(ratio * ratio * degrees, degrees) < REFUTED {
+        ratio
+    } else {
+        1.0
+    }
 }
 
 /// The scan with ln f raised by what symmetric noise of BRDF takes from it on average, the noise being that of the residuals of a first fit, over the weight of each sample.
@@ -102,15 +126,15 @@ fn unbiased(measurement: Measurement, wanted: &Wanted) -> Measurement {
     now
 }
 
-/// The samples as measured, weighted and raised by what their deviations are over `f`, and what a weight of 1 stands for.
-fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64) -> (Vec<Sample<f64>>, f64) {
+/// The samples as measured, weighted by what their deviations are over `f` and raised by what noise of this part of them takes from ln f, and what a weight of 1 stands for.
+fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64, part: f64) -> (Vec<Sample<f64>>, f64) {
     let unit = measurement.sigma_ln.unwrap_or(1.0);
     let pairs = measurement.samples.iter().zip(&measurement.deviations);
     let one = |(sample, deviation): (&Sample<f64>, &Deviation)| {
-        let (sigma, low) = deviation.of_ln(f(sample));
+        let (sigma, low) = deviation.times(part).of_ln(f(sample));
         Sample {
             brdf: sample.brdf * Real::portable_exp(low),
-            weight: sample.weight / unit * deviation.over(sample.brdf) / sigma,
+            weight: sample.weight / unit * deviation.over(sample.brdf) / sigma * part,
             ..*sample
         }
     };
@@ -119,10 +143,42 @@ fn weighted(measurement: &Measurement, f: impl Fn(&Sample<f64>) -> f64) -> (Vec<
     (samples, unit)
 }
 
+/// What a file states of the standard deviations of its values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stated {
+    /// That of ln f which a weight of 1 stands for.
+    pub sigma: f64,
+    /// Errors are of it whatever chi^2 says.
+    pub absolute: bool,
+}
+
+impl Stated {
+    /// What the file of a measurement states.
+    pub fn of(measurement: &Measurement) -> Option<Self> {
+        Some(Stated {
+            sigma: measurement.sigma_ln?,
+            absolute: measurement.on_deviations.absolute,
+        })
+    }
+}
+
+/// The uncertainty of a fit of these samples: with the correlation of its residuals ([`misfit::uncertainty`]), or of the standard deviations that the file states; and what became of these.
+pub fn uncertainty(
+    samples: &[Sample<f64>],
+    outcome: &Outcome,
+    stated: Option<Stated>,
+) -> (Uncertainty, Option<Verdict>) {
+    let Some(Stated { sigma, absolute }) = stated else {
+        return (misfit::uncertainty(samples, outcome), None);
+    };
+    let corrected = misfit::surely(samples, outcome);
+    judged(&corrected, &outcome.uncertainty, sigma, absolute)
+}
+
 /// The errors that the standard deviations give, or why not; a weight of 1 stands for `sigma`, and `independent` is without the correlation of residuals.
 ///
 /// Correlated residuals are no noise, and say themselves how large errors are, unless `absolute`.
-pub fn judged(
+fn judged(
     known: &Uncertainty,
     independent: &Uncertainty,
     sigma: f64,

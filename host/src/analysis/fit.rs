@@ -8,10 +8,10 @@ use rayon::prelude::*;
 
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
-use super::deviations::{self, Verdict};
+use super::deviations::{self, Stated, Verdict};
 use super::hints::{self, Hint};
 use super::proof::{Goal, Proof, of_outcome};
-use super::{misfit, range, unseen};
+use super::{range, unseen};
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
@@ -218,17 +218,8 @@ pub fn known(
     outcome: Outcome,
 ) -> (Outcome, Option<Verdict>) {
     let mut outcome = unseen::settled(samples, options, outcome);
-    let mut verdict = None;
-    outcome.uncertainty = match measurement.sigma_ln {
-        None => misfit::uncertainty(samples, &outcome),
-        Some(sigma) => {
-            let corrected = misfit::surely(samples, &outcome);
-            let absolute = measurement.on_deviations.absolute;
-            let judged = deviations::judged(&corrected, &outcome.uncertainty, sigma, absolute);
-            verdict = judged.1;
-            judged.0
-        }
-    };
+    let (uncertainty, verdict) = deviations::uncertainty(samples, &outcome, Stated::of(measurement));
+    outcome.uncertainty = uncertainty;
     (range::settled(samples, options, outcome), verdict)
 }
 

@@ -2,7 +2,9 @@
 
 mod curve;
 mod offset;
+mod prior;
 mod shadow;
+mod unmeasured;
 
 use brdfit_core::geometry::Sample;
 use serde::Serialize;
@@ -93,6 +95,22 @@ pub fn of_fit(measurement: &Measurement, options: &FitOptions, outcome: &Outcome
             format!("--robust left out {count} samples side by side at the specular or retro direction of theta_i = {degrees} deg, which are brighter than the fit: if they are a peak of the material, fit without it"),
         )
     }));
+    hints.extend(unmeasured::specular(&measurement.samples).map(|degrees| {
+        Hint::new(
+            "range",
+            format!("no sample is within {degrees:.0} deg of the specular direction: a narrow lobe there would not be seen, and the reflectance is without it"),
+        )
+    }));
+    if unmeasured::lobes_coincide(&measurement.samples, options) {
+        hints.push(Hint::new(
+            "lobes",
+            "at normal incidence the surface and the volume lobe are in one direction, and this scan tells them apart by the model alone: --terms diffuse,surface or --terms diffuse,volume says which is there, or measure at another theta_i too".to_string(),
+        ));
+    }
+    hints.extend(
+        prior::contradicted(&measurement.samples, options, outcome)
+            .map(|how| Hint::new("prior", format!("the scan contradicts a prior: {how}"))),
+    );
     if outcome.rms_ln >= LARGE {
         hints.push(Hint::new(
             "model",

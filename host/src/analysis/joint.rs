@@ -78,8 +78,8 @@ pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> 
         }
     });
     let candidates: Vec<Candidate> = judged.collect();
-    let bic = |place: &usize| candidates[*place].criteria.bic;
-    let place = (0..candidates.len()).min_by(|a, b| bic(a).total_cmp(&bic(b)));
+    let criteria = |place: &usize| candidates[*place].criteria;
+    let place = (0..candidates.len()).min_by(|a, b| criteria(a).order(&criteria(b)));
     Ok(Fits {
         place: place.ok_or((scans.len(), FitError::Terms(0)))?,
         candidates,

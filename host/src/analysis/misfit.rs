@@ -24,7 +24,7 @@ use brdfit_core::uncertainty::Place;
 
 use super::profile::calibrate::threshold;
 use super::unseen;
-use crate::engine::uncertainty::{Misfit, Uncertainty};
+use crate::engine::uncertainty::{Misfit, Uncertainty, along};
 use crate::engine::{Outcome, Values, View};
 use along::Along;
 use mixture::Student;
@@ -71,9 +71,18 @@ pub fn coverage_factor(known: &Uncertainty) -> f64 {
     factor
 }
 
-/// By how much correlation raises the variance of parameter `index` of the same fit with independent residuals; that of the least known if it has none itself.
+/// By how much correlation and the uncertainty of the calibration raise the variance of parameter `index` of the same fit with independent residuals; that of the least known if it has none itself.
 pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -> f64 {
-    let own = known.stderr[index] / independent.stderr[index];
+    let count = independent.places.len();
+    // What stands behind the axes of the parameters is the calibration, which the samples do not show.
+    let noise = match independent.axes.get(..count) {
+        Some(noise) if independent.axes.len() > count => along(
+            noise,
+            &Values::from_fn(count, |place| f64::from(u8::from(place == index))),
+        ),
+        _ => independent.stderr[index],
+    };
+    let own = known.stderr[index] / noise;
     let most = known.misfit.map_or(1.0, |misfit| misfit.factor.1);
     let factor = if own.is_finite() && own > 0.0 { own } else { most };
     factor * factor

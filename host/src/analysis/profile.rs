@@ -3,6 +3,7 @@
 use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
+use super::deviations::Stated;
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
@@ -50,8 +51,9 @@ pub fn profiles(
     outcome: Outcome,
     places: &[usize],
     copies: u32,
+    stated: Option<Stated>,
 ) -> Result<Profiles, FitError> {
-    restarted(samples, options, outcome, places, copies, RESTARTS)
+    restarted(samples, options, outcome, places, copies, stated, RESTARTS)
 }
 
 /// The same with so many restarts.
@@ -61,6 +63,7 @@ fn restarted(
     outcome: Outcome,
     places: &[usize],
     copies: u32,
+    stated: Option<Stated>,
     restarts: usize,
 ) -> Result<Profiles, FitError> {
     let mut found = Profiles {
@@ -71,9 +74,9 @@ fn restarted(
     let mut restart = 0;
     loop {
         // Copies take most of the time, and are made when the fit is sure.
-        found.list = list(samples, options, &found.outcome, places, 0)?;
+        found.list = list(samples, options, &found.outcome, places, 0, stated)?;
         if copies > 0 && found.lower(samples, options, BETTER).is_none() {
-            found.list = list(samples, options, &found.outcome, places, copies)?;
+            found.list = list(samples, options, &found.outcome, places, copies, stated)?;
         }
         let Some(better) = found.lower(samples, options, BETTER).filter(|_| restart < restarts) else {
             break;
@@ -89,7 +92,7 @@ fn restarted(
         let outcome = &found.outcome;
         let anew = found.list.into_par_iter();
         found.list = anew
-            .map(|profile| around(profile, samples, options, outcome, copies))
+            .map(|profile| around(profile, samples, options, outcome, copies, stated))
             .collect::<Result<_, _>>()?;
     }
     Ok(found)
@@ -122,9 +125,10 @@ fn list(
     outcome: &Outcome,
     places: &[usize],
     copies: u32,
+    stated: Option<Stated>,
 ) -> Result<Vec<Profile>, FitError> {
     let each = places.par_iter();
-    each.map(|&place| profile(samples, options, outcome, place, copies))
+    each.map(|&place| profile(samples, options, outcome, place, copies, stated))
         .collect()
 }
 
@@ -135,10 +139,11 @@ fn around(
     options: &FitOptions,
     outcome: &Outcome,
     copies: u32,
+    stated: Option<Stated>,
 ) -> Result<Profile, FitError> {
     let held = Held::new(samples, options, outcome, profile.index);
     profile.points.push(exact(samples, options, outcome, profile.index)?);
-    referred(profile, &held, outcome, copies)
+    referred(profile, &held, outcome, copies, stated)
 }
 
 /// The point of a fit; what rounding to `f32` has left is made up.
@@ -155,7 +160,7 @@ fn exact(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, index
 /// Profiles parameter `index` of the model from bound to bound, starting from a fit of these samples with these options; in `f64`.
 ///
 /// Each point is the best of fits from its neighbours on both sides, from the minima of the fit, and from a search of its own.
-/// The intervals are those of the F test, with the correlation of the residuals, or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
+/// The intervals are those of the F test, with the correlation of the residuals; or those that the stated standard deviations give, as far as chi^2 does not refute them; or with `copies` those of [`calibrate::thresholds`] at the ends that the F test gives.
 ///
 /// # Errors
 /// [`FitError`].
@@ -165,6 +170,7 @@ pub fn profile(
     outcome: &Outcome,
     index: usize,
     copies: u32,
+    stated: Option<Stated>,
 ) -> Result<Profile, FitError> {
     let held = Held::new(samples, options, outcome, index);
     let (lower, upper) = (options.lower[index], options.upper[index]);
@@ -202,7 +208,7 @@ pub fn profile(
             high: whole(upper),
         }),
     };
-    referred(profile, &held, outcome, copies)
+    referred(profile, &held, outcome, copies, stated)
 }
 
 /// A first step that is short against the standard error, if there is one, and the value itself.
@@ -247,7 +253,7 @@ mod tests {
         let poor = engine::fit(samples, &lazy).unwrap();
         assert!(poor.cost > 1.1 * least, "{} {least}", poor.cost);
         // Places of rho_d and m.
-        let found = restarted(samples, &options, poor.clone(), &[0, 3], 0, 0).unwrap();
+        let found = restarted(samples, &options, poor.clone(), &[0, 3], 0, None, 0).unwrap();
         assert_eq!(found.improved_from, Some(poor.cost));
         for profile in &found.list {
             for point in &profile.points {

@@ -29,6 +29,14 @@ impl Deviation {
         libm::hypot(self.absolute / brdf, self.relative)
     }
 
+    /// This part of it.
+    pub fn times(&self, part: f64) -> Self {
+        Deviation {
+            absolute: self.absolute * part,
+            relative: self.relative * part,
+        }
+    }
+
     /// The relative one that leaves residuals of this standard deviation in the logarithm, the inverse of [`Deviation::of_ln`].
     pub fn of_residual(residual: f64) -> Self {
         let mut relative = residual;

@@ -211,7 +211,7 @@ fn candidates(choice: &Choice) -> Markup {
     let above = |criterion: f64, least: f64| minus(&format!("{:.1}", criterion - least));
     html! {
         table {
-            caption { "What was compared: the fit is that of least BIC. AICc and BIC are given above their least; a difference of 10 leaves no doubt." @if let Some(inflation) = choice.inflation { " " (capital(&words::judged(&inflation))) "." } }
+            caption { "What was compared: the fit is that of least BIC" (words::among(choice)) ". AICc and BIC are given above their least; a difference of 10 leaves no doubt." @if let Some(inflation) = choice.inflation { " " (capital(&words::judged(&inflation))) "." } }
             thead { tr { th.text { "candidate" } th { "parameters" } th { "rms of ln " i { "f" } } th { "AICc" } th { "BIC" } } }
             tbody {
                 @for (place, one) in choice.candidates.iter().enumerate() { tr {

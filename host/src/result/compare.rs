@@ -10,6 +10,7 @@ use crate::number::four;
 use crate::plot;
 use crate::result::json::ByName;
 use crate::result::json::provenance::provenance;
+use crate::result::words;
 
 /// A table for people.
 pub fn text(measurement: &Measurement, choice: &Choice) -> String {
@@ -37,9 +38,10 @@ pub fn text(measurement: &Measurement, choice: &Choice) -> String {
             values.join(", "),
         ));
     }
-    lines.push(
-        "  AICc and BIC are above their least; * has the least BIC; a difference of 10 leaves no doubt.".to_string(),
-    );
+    lines.push(format!(
+        "  AICc and BIC are above their least; * has the least BIC{}; a difference of 10 leaves no doubt.",
+        words::among(choice)
+    ));
     lines.join("\n") + "\n"
 }
 

@@ -125,6 +125,16 @@ fn factor(factor: f64) -> String {
     format!("{factor:.1}")
 }
 
+/// Of which candidates the chosen one has the least BIC, if not of all; to be put behind "the least BIC".
+pub fn among(choice: &Choice) -> &'static str {
+    let saturated = choice.candidates.iter().any(|one| one.criteria.saturated);
+    if saturated && !choice.chosen().criteria.saturated {
+        " of those with at least three samples more than parameters"
+    } else {
+        ""
+    }
+}
+
 /// One sentence on what the scene needs.
 pub fn choice(choice: &Choice) -> String {
     let (model, terms) = (choice.chosen().options.model, choice.chosen().options.terms);
@@ -132,12 +142,17 @@ pub fn choice(choice: &Choice) -> String {
     let models = choice.models().len();
     if models > 1 {
         let others = choice.candidates.iter().filter(|one| one.options.model != model);
-        let next = others.min_by(|a, b| a.criteria.bic.total_cmp(&b.criteria.bic));
+        let next = others.filter(|other| !other.criteria.saturated);
+        let next = next.min_by(|a, b| a.criteria.order(&b.criteria));
         let next = next.map_or_else(String::new, |next| {
             let above = next.criteria.bic - choice.chosen().criteria.bic;
             format!("; that of {}, the next, is {above:.1} above", next.options.model.name)
         });
-        parts.push(format!("of {models} models {} has the least BIC{next}", model.name));
+        let among = among(choice);
+        parts.push(format!(
+            "of {models} models {} has the least BIC{among}{next}",
+            model.name
+        ));
     }
     if choice.chose_terms(model) || models == 1 {
         let left_out = term_names(ALL & !terms);

@@ -3,7 +3,7 @@
 use super::{Profile, Profiles, profiles};
 use crate::analysis::bootstrap::bootstrap;
 use crate::analysis::choose::{self, Choice, Wanted};
-use crate::analysis::{deviations, misfit};
+use crate::analysis::deviations::{self, Stated};
 use crate::engine::{FitError, FitOptions, Outcome, Values, robust};
 use crate::error::{Error, shown};
 use crate::input::{self, About, Measurement};
@@ -64,7 +64,7 @@ pub struct Findings {
 /// ```
 pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result<Findings, Error> {
     let measurement = &deviations::settled(measurement.clone(), wanted);
-    let samples = &measurement.samples;
+    let (samples, stated) = (&measurement.samples, Stated::of(measurement));
     let found = || -> Result<_, FitError> {
         let (options, outcome, choice) = choose::fit(samples, wanted)?;
         let samples = &robust::kept(samples, &outcome)[..];
@@ -73,9 +73,9 @@ pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result
             Ok(parameters) => parameters,
             Err(error) => return Ok(Err(error)),
         };
-        let found = profiles(samples, &plain, outcome, &parameters, asked.calibrate)?;
+        let found = profiles(samples, &plain, outcome, &parameters, asked.calibrate, stated)?;
         let mut known = found.outcome.clone();
-        known.uncertainty = misfit::uncertainty(samples, &known);
+        known.uncertainty = deviations::uncertainty(samples, &known, stated).0;
         let copies = bootstrap(samples, &plain, &known, asked.bootstrap)?;
         Ok(Ok((options, choice, found, copies)))
     };
@@ -86,7 +86,7 @@ pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result
         improved_from,
         list: profiles,
     } = found;
-    outcome.uncertainty = misfit::uncertainty(&robust::kept(samples, &outcome), &outcome);
+    outcome.uncertainty = deviations::uncertainty(&robust::kept(samples, &outcome), &outcome, stated).0;
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
     }

@@ -4,6 +4,7 @@ use brdfit_core::real::Real;
 
 use super::calibrate::{LEVELS, threshold, thresholds};
 use super::hold::{Held, Point};
+use crate::analysis::deviations::{self, Stated};
 use crate::analysis::misfit;
 use crate::engine::{FitError, Outcome};
 
@@ -61,7 +62,13 @@ impl Profile {
 ///
 /// # Errors
 /// [`FitError`].
-pub(super) fn referred(mut profile: Profile, held: &Held, outcome: &Outcome, copies: u32) -> Result<Profile, FitError> {
+pub(super) fn referred(
+    mut profile: Profile,
+    held: &Held,
+    outcome: &Outcome,
+    copies: u32,
+    stated: Option<Stated>,
+) -> Result<Profile, FitError> {
     let Held {
         samples,
         options,
@@ -69,7 +76,7 @@ pub(super) fn referred(mut profile: Profile, held: &Held, outcome: &Outcome, cop
         ..
     } = *held;
     // The ratio of likelihoods of independent residuals, scaled to the variance that they have (Rotnitzky and Jewell 1990).
-    let known = misfit::uncertainty(samples, outcome);
+    let known = deviations::uncertainty(samples, outcome, stated).0;
     let inflation = misfit::inflation(&known, &outcome.uncertainty, index);
     profile.degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
     profile.limits = LEVELS.map(|level| inflation * threshold(level, known.effective.max(1.0)));

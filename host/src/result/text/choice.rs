@@ -38,7 +38,10 @@ pub fn lines(choice: &Choice) -> Vec<String> {
     } else {
         ""
     };
-    lines.push(format!("    AICc and BIC above their least; * has the least BIC{test}"));
+    let among = words::among(choice);
+    lines.push(format!(
+        "    AICc and BIC above their least; * has the least BIC{among}{test}"
+    ));
     if let Some(inflation) = choice.inflation {
         lines.push(format!("    {}", words::judged(&inflation)));
     }

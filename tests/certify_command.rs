@@ -108,6 +108,25 @@ fn results_are_proved_too() {
     assert!(kept["mse2"].as_f64().unwrap() < 1.000_001 * best["mse2"].as_f64().unwrap());
 }
 
+/// Results are of the file as it was: what took its place is neither proved nor reported in their name.
+#[test]
+fn another_file_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let copy = |set: u32| write(&folder, "scan.csv", std::fs::read(noisy(set)).unwrap());
+    let scan = copy(3);
+    let result = write(&folder, "fit.json", succeed(&["fit", &scan, "--format", "json"]));
+    copy(1);
+    for command in ["certify", "report"] {
+        let message = fail(&[command, &result]);
+        assert!(
+            message.starts_with(&scan)
+                && message.contains("its SHA-256 is ")
+                && message.contains(&format!("; give {command} the files as they were")),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn what_has_no_proof_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -68,7 +68,7 @@ fn scans(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Subject>
     Ok(input::parse(name, bytes, options)?.into_iter().map(subject).collect())
 }
 
-/// The scans that results name; those without a fit are left out, and standard error is told.
+/// The scans that results name, in the files as they were; those without a fit are left out, and standard error is told.
 fn of_results(
     name: &str,
     fitted: Vec<StoredFit>,
@@ -110,6 +110,7 @@ fn of_results(
             let scan = one.scan.as_deref().unwrap_or("without a name");
             Error::new(format!("there is no scan {scan}, which {name} names")).in_file(file)
         })?;
+        results::same_files(&subject.measurement.about.sources, &one, command)?;
         subject.stored = Some(one);
         found.push(subject);
     }

@@ -7,6 +7,7 @@ use serde::Deserialize;
 
 use crate::engine::{Material, Model, Values};
 use crate::error::Error;
+use crate::input::source::Source;
 use crate::number::shortest;
 use crate::plain::of_cell;
 use crate::terms::terms;
@@ -20,6 +21,8 @@ pub struct StoredFit {
     pub scan: Option<String>,
     /// The terms of the model that it was fitted with, if that is told and has any.
     pub terms: Option<u8>,
+    /// The SHA-256 of each file that it was read from; empty if that is not told, as in tables.
+    pub sha256: Vec<String>,
     /// Its model with its parameters, or why it has none.
     pub material: Result<Material, String>,
 }
@@ -43,6 +46,18 @@ struct Object {
     terms: Option<Vec<String>>,
     parameters: Option<HashMap<String, f64>>,
     error: Option<String>,
+    /// Results of version 0.1 have none.
+    provenance: Option<Provenance>,
+}
+
+#[derive(Deserialize)]
+struct Provenance {
+    files: Vec<Hashed>,
+}
+
+#[derive(Deserialize)]
+struct Hashed {
+    sha256: String,
 }
 
 fn json(text: &str) -> Option<Vec<StoredFit>> {
@@ -57,6 +72,9 @@ fn json(text: &str) -> Option<Vec<StoredFit>> {
             file: object.file,
             scan: object.scan,
             terms: object.terms.and_then(|names| terms(&names.join(",")).ok()),
+            sha256: object.provenance.map_or_else(Vec::new, |from| {
+                from.files.into_iter().map(|file| file.sha256).collect()
+            }),
             material,
         })
     };
@@ -86,6 +104,7 @@ fn csv(text: &str) -> Option<Vec<StoredFit>> {
             file: of_cell(row.get(file)?).into(),
             scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             terms: cell("terms").and_then(|names| terms(&names.replace('+', ",")).ok()),
+            sha256: Vec::new(),
             material,
         });
     }
@@ -101,6 +120,23 @@ fn material(model: Option<&str>, number: impl Fn(&str) -> Option<f64>) -> Option
     let values = model.parameters.iter().map(|parameter| number(parameter.name));
     let values: Option<Values> = values.collect::<Option<Vec<f64>>>().map(Values::from_iter);
     Some(Material { model, values: values? })
+}
+
+/// Refuses files that are not those which these results were read from.
+///
+/// # Errors
+/// The first file of another SHA-256, with both; `command` is what the message calls the command.
+pub fn same_files(sources: &[Source], stored: &StoredFit, command: &str) -> Result<(), Error> {
+    let other = |source: &&Source| !stored.sha256.contains(&source.sha256);
+    let (Some(source), Some(before)) = (sources.iter().find(other), stored.sha256.first()) else {
+        return Ok(());
+    };
+    Err(Error::new(format!(
+        "its SHA-256 is {} now, and {before} in the results",
+        source.sha256
+    ))
+    .in_file(&source.file)
+    .help(format!("give {command} the files as they were, or fit the scan anew")))
 }
 
 /// Refuses a fit with another model or other parameters than these results have.

@@ -116,7 +116,7 @@ fn each_error_of_a_file_names_its_place() {
 #[test]
 fn errors_of_options_are_one_line() {
     let (_folder, file) = scene();
-    let cases: [(&[&str], &str); 13] = [
+    let cases: [(&[&str], &str); 17] = [
         (&["--bounds", "n=2:1"], "wrong way round"),
         (&["--bounds", "n=1:NaN"], "cannot be NaN"),
         (&["--bounds", "n=0.5:2"], "n cannot be 0.5"),
@@ -133,6 +133,13 @@ fn errors_of_options_are_one_line() {
             &["--fix", "kappa=0", "--terms", "diffuse,surface"],
             "not a parameter of the terms",
         ),
+        (
+            &["--prior", "kappa=1+-0.1", "--terms", "diffuse,surface"],
+            "not a parameter of the terms",
+        ),
+        (&["--proof-boxes", "10"], "--proof-boxes limits a proof"),
+        (&["--model", "abg", "--terms", "auto"], "abg has no terms"),
+        (&["--model", "abg", "--terms", "diffuse"], "abg has no terms"),
         (&["--terms", "volume"], "--terms takes one of: "),
         (&["--terms", "gloss"], "no term 'gloss'"),
         (&["--output", "missing/folder/out.json"], "cannot be written"),
@@ -141,6 +148,8 @@ fn errors_of_options_are_one_line() {
         let message = fail(&[&["fit", &file], options].concat());
         assert!(message.contains(what) && message.contains("; "), "{message}");
     }
+    assert!(fail(&["joint", &file, &file, "--terms", "diffuse", "--share", "m"]).contains("cannot be shared"));
+    assert!(fail(&["converge", &file, "--model", "abg", "--terms", "diffuse"]).contains("abg has no terms"));
     assert!(fail(&["fit", "-", "-"]).contains("only once"));
     for usage in [
         &["fit"] as &[&str],

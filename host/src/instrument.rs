@@ -7,6 +7,7 @@ use crate::engine::{FitOptions, Instrument, Limit, Material, Model, Precision, P
 use crate::error::{Error, shown};
 use crate::number::shortest;
 use crate::parameters::check;
+use crate::terms::term_names;
 
 /// Offsets of theta_s that are looked for, degrees to both sides.
 const OFFSETS: f64 = 10.0;
@@ -63,6 +64,11 @@ impl InstrumentArguments {
             if options.lower[place] == options.upper[place] {
                 return Err(Error::new(format!("{name} is fixed, and a prior of it has no effect"))
                     .help("keep --fix or --prior"));
+            }
+            if model.left_out(options.terms, place) {
+                let names = term_names(options.terms).join(",");
+                return Err(Error::new(format!("{name} is not a parameter of the terms {names}"))
+                    .help("leave out its --prior, or take more --terms"));
             }
             if options.instrument.priors[place].replace(known).is_some() {
                 return Err(Error::new(format!("{name} has two priors")).help("give one"));

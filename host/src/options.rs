@@ -1,6 +1,6 @@
 //! What the options of the command line mean to the engine.
 
-use brdfit_core::brdf::ALL;
+use brdfit_core::brdf::{ALL, DIFFUSE};
 #[cfg(feature = "cli")]
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 #[cfg(feature = "cli")]
@@ -13,7 +13,7 @@ use crate::error::{Error, shown};
 use crate::instrument::InstrumentArguments;
 use crate::names::{METHODS, PRECISIONS};
 use crate::parameters::{AUTO, Range, apply, check, models, names_of, parameter};
-use crate::terms::terms;
+use crate::terms::{term_names, terms_of};
 use crate::until::until;
 
 /// How to search, with which model and within which bounds: the options that every command that fits has.
@@ -124,7 +124,14 @@ impl SearchArguments {
         for text in self.bounds.iter().chain(&self.fix).chain(&self.instrument.prior) {
             known(&models, text)?;
         }
-        let each = models.iter().map(|model| self.of_model(model));
+        let terms = if self.terms == AUTO {
+            // All sets to choose from have a diffuse term.
+            terms_of(&models, term_names(DIFFUSE)[0])?;
+            ALL
+        } else {
+            terms_of(&models, &self.terms)?
+        };
+        let each = models.iter().map(|model| self.of_model(model, terms));
         let list: Vec<FitOptions> = each.collect::<Result<_, _>>()?;
         Ok(match &list[..] {
             _ if self.terms == AUTO => Wanted::Best(list.iter().flat_map(sets).collect()),
@@ -134,7 +141,7 @@ impl SearchArguments {
     }
 
     /// The same of one model, with the bounds of the parameters that it has.
-    fn of_model(&self, model: &'static Model) -> Result<FitOptions, Error> {
+    fn of_model(&self, model: &'static Model, terms: u8) -> Result<FitOptions, Error> {
         let mut options = FitOptions {
             method: self.method,
             precision: self.precision,
@@ -142,7 +149,7 @@ impl SearchArguments {
             starts: self.starts,
             robust: self.robust,
             until: until(),
-            terms: if self.terms == AUTO { ALL } else { terms(&self.terms)? },
+            terms,
             ..FitOptions::of(model)
         };
         let has = |text: &&String| place(model, text).is_some();

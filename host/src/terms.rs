@@ -2,8 +2,11 @@
 
 use brdfit_core::brdf::{ABSORBING, ALL, DIFFUSE, SURFACE, VOLUME};
 
-use crate::engine::TERM_SETS;
+use crate::engine::{Model, TERM_SETS};
 use crate::error::{Error, shown};
+
+/// The word for all terms that a model has.
+const ALL_TERMS: &str = "all";
 
 /// The terms of the model by name.
 pub const TERMS: [(&str, u8); 4] = [
@@ -28,7 +31,7 @@ pub fn terms(list: &str) -> Result<u8, Error> {
         let sets: Vec<String> = TERM_SETS.iter().map(|&set| term_names(set).join(",")).collect();
         Error::new(what).help(format!("--terms takes one of: {}", sets.join(" | ")))
     };
-    if list == "all" {
+    if list == ALL_TERMS {
         return Ok(ALL);
     }
     let mut set = 0;
@@ -45,9 +48,54 @@ pub fn terms(list: &str) -> Result<u8, Error> {
     }
 }
 
+/// The same for some models, of which one at least must have each term of the list; `all` is what there is.
+///
+/// # Errors
+/// As [`terms`], and a term that none of the models has.
+pub fn terms_of(models: &[&Model], list: &str) -> Result<u8, Error> {
+    let chosen = terms(list)?;
+    let has = models.iter().fold(0, |has, model| has | model.terms);
+    if list == ALL_TERMS || chosen & !has == 0 {
+        return Ok(chosen);
+    }
+    let names: Vec<&str> = models.iter().map(|model| model.name).collect();
+    let (who, verb) = match names[..] {
+        [one] => (format!("the model {one}"), "has"),
+        _ => (format!("the models {}", names.join(", ")), "have"),
+    };
+    Err(match has {
+        0 => Error::new(format!("{who} {verb} no terms that could be left out")).help("leave out --terms"),
+        _ => Error::new(format!("{who} {verb} no term {}", term_names(chosen & !has).join(", ")))
+            .help(format!("take some of --terms {}", term_names(has).join(","))),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn models_have_the_terms_that_are_asked_for() {
+        let of = |names: &[&str], list: &str| {
+            let models: Vec<&Model> = names.iter().map(|name| Model::find(name).unwrap()).collect();
+            terms_of(&models, list)
+        };
+        assert_eq!(of(&["beckmann"], "diffuse"), Ok(DIFFUSE));
+        assert_eq!(of(&["abg", "beckmann"], "diffuse,surface"), Ok(DIFFUSE | SURFACE));
+        assert_eq!(of(&["abg"], "all"), Ok(ALL));
+        for (models, list, what) in [
+            (&["abg"][..], "diffuse", "the model abg has no terms"),
+            (&["abg", "k-correlation"], "diffuse", "k-correlation have no terms"),
+            (
+                &["cook-torrance"],
+                "diffuse,surface,volume",
+                "cook-torrance has no term volume",
+            ),
+        ] {
+            let message = of(models, list).unwrap_err().to_string();
+            assert!(message.contains(what) && message.contains("; "), "{message}");
+        }
+    }
 
     #[test]
     fn reads_terms() {

@@ -79,6 +79,7 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     }
     let form = Form::of(out, arguments.format)?;
     let wanted = arguments.search.wanted()?;
+    arguments.proof.refuse_without(arguments.certify)?;
     if arguments.certify.is_some() {
         provable(wanted.candidates())?;
     }

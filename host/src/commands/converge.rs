@@ -18,7 +18,7 @@ use crate::plot::picture;
 use crate::result::converge as write;
 use crate::result::json::provenance::provenance;
 use crate::streams::Streams;
-use crate::terms::terms;
+use crate::terms::terms_of;
 
 /// Shows error against run time and passes of both methods, in f64 and f32, over many seeds
 #[derive(Args, Debug)]
@@ -60,7 +60,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
     let model = model(&arguments.model)?;
     let options = FitOptions {
-        terms: terms(&arguments.terms)?,
+        terms: terms_of(&[model], &arguments.terms)?,
         ..FitOptions::of(model)
     };
     let truth = arguments.truth.as_deref();

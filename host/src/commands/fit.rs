@@ -62,6 +62,7 @@ pub struct Arguments {
 /// The first thing that is wrong with options, files or the fit.
 pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error> {
     let wanted = arguments.search.wanted()?;
+    arguments.proof.refuse_without(arguments.certify)?;
     let (target, picture) = arguments.output.targets(arguments.plot.as_deref(), &arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if arguments.plot.is_some() && measurements.len() > 1 {

@@ -166,8 +166,23 @@ fn run_repeats(arguments: &Arguments, given: &[OsString], streams: &mut Streams)
 fn with_shared(wanted: &Wanted, list: &str) -> Result<Vec<(FitOptions, Vec<bool>)>, Error> {
     let each = wanted.candidates().iter();
     let each = each.map(|options| shared(options.model, list).map(|shared| (*options, shared)));
-    if let Wanted::One(_) = wanted {
-        return each.collect();
+    if let Wanted::One(options) = wanted {
+        let all: Vec<_> = each.collect::<Result<_, _>>()?;
+        let absent = all.iter().flat_map(|(_, shared)| {
+            let places = (0..shared.len()).filter(|&place| shared[place]);
+            places.filter(|&place| options.model.left_out(options.terms, place))
+        });
+        if let Some(place) = absent.min() {
+            let (name, names) = (
+                options.model.parameters[place].name,
+                term_names(options.terms).join(","),
+            );
+            return Err(Error::new(format!(
+                "{name} is not a parameter of the terms {names}, and cannot be shared"
+            ))
+            .help("--share another parameter, or take more --terms"));
+        }
+        return Ok(all);
     }
     let able: Vec<_> = each.filter_map(Result::ok).collect();
     if able.is_empty() {

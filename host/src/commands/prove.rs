@@ -8,6 +8,7 @@ use indicatif::ProgressBar;
 use crate::analysis::fit::FittedScan;
 use crate::analysis::proof::{Goal, NOTHING};
 use crate::engine::certify::Certificate;
+use crate::error::Error;
 use crate::interrupt;
 use crate::number::percent_up;
 use crate::streams::Ended;
@@ -24,6 +25,22 @@ pub(crate) struct ProofArguments {
 }
 
 impl ProofArguments {
+    /// Refuses limits of a proof that nobody asked for.
+    ///
+    /// # Errors
+    /// One of them is given, and `certify` is not.
+    pub(crate) fn refuse_without(&self, certify: Option<f64>) -> Result<(), Error> {
+        let given = [
+            ("--proof-seconds", self.proof_seconds.is_some()),
+            ("--proof-boxes", self.proof_boxes.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given && certify.is_none()) {
+            Some((option, _)) => Err(Error::new(format!("{option} limits a proof, and none is asked for"))
+                .help(format!("add --certify 5%, or leave out {option}"))),
+            None => Ok(()),
+        }
+    }
+
     /// To prove this within what it may take; `interrupted` ends it too, and `progress` is told.
     pub(crate) fn goal<'a>(
         &self,

@@ -53,6 +53,7 @@ pub struct Arguments {
 /// The first thing that is wrong with options, files or a fit.
 pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> Result<(), Error> {
     let wanted = arguments.search.wanted()?;
+    arguments.proof.refuse_without(arguments.certify)?;
     arguments.read.refuse_together("report")?;
     if arguments.certify.is_some() {
         provable(wanted.candidates())?;

@@ -17,7 +17,7 @@ use crate::output::{Format, OutputArguments, deliver};
 use crate::parameters::model;
 use crate::result::json::provenance::{Provenance, provenance};
 use crate::streams::Streams;
-use crate::terms::terms;
+use crate::terms::terms_of;
 
 /// Shows what rounding does to the fit of a scan, or to built-in stiff and extreme cases
 #[derive(Args, Debug)]
@@ -62,9 +62,10 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<(), Error> {
         }
         Some(path) => {
             let measurement = input::read_one(path, &arguments.read, streams.input)?;
+            let model = model(&arguments.model)?;
             let options = FitOptions {
-                terms: terms(&arguments.terms)?,
-                ..FitOptions::of(model(&arguments.model)?)
+                terms: terms_of(&[model], &arguments.terms)?,
+                ..FitOptions::of(model)
             };
             let case = assess(&measurement.label(), &measurement.samples, &options)
                 .map_err(|error| input::explain(&measurement, error))?;

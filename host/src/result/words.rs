@@ -10,8 +10,6 @@ use crate::engine::uncertainty::Misfit;
 use crate::number::{four, percent, percent_up, six, two};
 use crate::terms::term_names;
 
-use brdfit_core::brdf::ALL;
-
 /// One line, such as "rho_s, n and kappa only through rho_s F(theta_d); their product is known to 0.4 %".
 pub fn sentence(what: &Undetermined) -> String {
     let names = listed(&what.parameters);
@@ -155,7 +153,7 @@ pub fn choice(choice: &Choice) -> String {
         ));
     }
     if choice.chose_terms(model) || models == 1 {
-        let left_out = term_names(ALL & !terms);
+        let left_out = term_names(model.terms & !terms);
         let needs = format!("the scene needs {}", term_names(terms).join(", "));
         parts.push(match left_out.is_empty() {
             true => needs + ": every term pays",

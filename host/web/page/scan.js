@@ -32,6 +32,7 @@ function boundFields() {
   $("bound-fields").replaceChildren(table([["parameter", "word"], ["least"], ["largest"], ["fixed"]], rows, "Bounds and fixed values"));
   const terms = $("option-terms");
   terms.disabled = one !== undefined && one.terms.length === 0;
+  if (terms.disabled) terms.value = "";
 }
 
 /**

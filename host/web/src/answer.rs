@@ -23,7 +23,7 @@ use brdfit::plot;
 use brdfit::result::inspect::{self, Inspected};
 use brdfit::result::json::provenance::provenance;
 use brdfit::result::{self, compare, converge, profile};
-use brdfit::terms::{TERMS, term_names, terms};
+use brdfit::terms::{TERMS, term_names, terms_of};
 use serde::Serialize;
 use serde_json::value::RawValue;
 use serde_json::{Value, json};
@@ -94,9 +94,10 @@ fn answered(session: &mut Session, request: &[u8], told: Told) -> Result<Value, 
         Want::Certify { within, seconds } => certified(session.fit(of)?, within, seconds, told)?,
         Want::Converge { seeds } => {
             let (subject, scan) = session.one(of)?;
+            let model = model(&subject.search.model)?;
             let options = FitOptions {
-                terms: terms(&subject.search.terms)?,
-                ..FitOptions::of(model(&subject.search.model)?)
+                terms: terms_of(&[model], &subject.search.terms)?,
+                ..FitOptions::of(model)
             };
             let found = study(&scan.label(), &scan.samples, None, &options, seeds, || {});
             let studies = [found.map_err(|error| input::explain(scan, error))?];

@@ -6,8 +6,10 @@ use brdfit::input::{self, Measurement, ReadOptions};
 use brdfit_core::brdf::{ALL, DIFFUSE};
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
+use brdfit_suite::program::{brdfit, write};
 use brdfit_suite::scan::{data, left_out, shared};
 use brdfit_suite::tolerance::{self, check};
+use serde_json::Value;
 
 fn read(path: &std::path::Path, options: &ReadOptions) -> Measurement {
     let bytes = std::fs::read(path).expect("a readable file");
@@ -57,6 +59,38 @@ fn outliers_of_a_synthetic_scan_are_found() {
         (same.params, same.robust.expect("a scale").outliers),
         (fit(&clean, false).params, vec![])
     );
+}
+
+/// A joint fit is that of the scans without what the robust fit of each alone leaves out.
+#[test]
+fn joint_fits_leave_outliers_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = std::fs::read_to_string(data("testdata1_sym_seed1.csv")).unwrap();
+    let spoilt = [100, 130, 160];
+    let dirty = table.lines().enumerate().map(|(line, row)| match row.rsplit_once(',') {
+        Some((angles, brdf)) if spoilt.contains(&line) => format!("{angles},{}\n", 20.0 * brdf.parse::<f64>().unwrap()),
+        _ => format!("{row}\n"),
+    });
+    let dirty = write(&folder, "dirty.csv", dirty.collect::<String>());
+    let cut = table.lines().enumerate().filter(|(line, _)| !spoilt.contains(line));
+    let cut = write(
+        &folder,
+        "cut.csv",
+        cut.map(|(_, row)| format!("{row}\n")).collect::<String>(),
+    );
+    let other = data("testdata1_sym_seed2.csv").display().to_string();
+    let joint = |file: &str, more: &[&str]| -> Value {
+        let ran = brdfit(&[&["joint", file, &other, "--format", "json"], more].concat(), b"");
+        assert_eq!(ran.code, 0, "{}", ran.errors);
+        serde_json::from_str(&ran.output).expect("JSON")
+    };
+    let (robust, wanted) = (joint(&dirty, &["--robust"]), joint(&cut, &[]));
+    assert_eq!(robust["cost"], wanted["cost"]);
+    assert_eq!(robust["scans"][0]["parameters"], wanted["scans"][0]["parameters"]);
+    assert_eq!(robust["scans"][0]["left_out"][0]["samples"], spoilt.len());
+    assert_ne!(joint(&dirty, &[])["cost"], wanted["cost"]);
+    let text = brdfit(&["joint", &dirty, &other, "--robust"], b"").output;
+    assert!(text.contains("    left out 3 samples: 3 far from the fit"), "{text}");
 }
 
 #[test]

@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
-use crate::analysis::fit::{FittedScan, fit};
+use crate::analysis::fit::{FittedScan, Told, fit, fit_telling};
 use crate::analysis::joint::{self, Candidate, Fits};
 use crate::analysis::repeats::quantities;
 use crate::document;
 use crate::engine::joint::SCANS;
-use crate::engine::{FitOptions, Model};
+use crate::engine::{FitOptions, Model, robust};
 use crate::error::{Error, shown};
-use crate::input::{self, Measurement, ReadOptions, measurement};
+use crate::input::{self, Measurement, ReadOptions, left_out, measurement};
 use crate::number::{four, two};
 use crate::options::SearchArguments;
 use crate::output::{OutputArguments, deliver};
@@ -89,7 +89,10 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
         );
     }
     let pool = arguments.search.pool()?;
-    let measurements = settled(measurements, &wanted, &pool);
+    let mut measurements = settled(measurements, &wanted, &pool);
+    if arguments.search.robust {
+        measurements = without_outliers(measurements, &wanted, &pool)?;
+    }
     let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let fits = pool
         .install(|| joint::fit(&samples, &candidates))
@@ -110,6 +113,23 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
 /// Each scan with weights from its own fit, where its file gives standard deviations.
 fn settled(measurements: Vec<Measurement>, wanted: &Wanted, pool: &ThreadPool) -> Vec<Measurement> {
     let one = |measurement| deviations::settled(measurement, wanted);
+    pool.install(|| measurements.into_par_iter().map(one).collect())
+}
+
+/// Each scan without the outliers that the robust fit of it alone leaves out.
+fn without_outliers(
+    measurements: Vec<Measurement>,
+    wanted: &Wanted,
+    pool: &ThreadPool,
+) -> Result<Vec<Measurement>, Error> {
+    let one = |measurement: Measurement| {
+        let alone = fit_telling(Told::Columns, &measurement, wanted)?;
+        Ok(Measurement {
+            samples: robust::kept(&measurement.samples, &alone.outcome),
+            left_out: alone.left_out,
+            ..measurement
+        })
+    };
     pool.install(|| measurements.into_par_iter().map(one).collect())
 }
 
@@ -232,6 +252,7 @@ fn text(fits: &Fits, measurements: &[Measurement]) -> String {
             .map(|k| format!("{} {}", name(k), value(scan, k)))
             .collect();
         lines.push(format!("  {}: {}", measurement.label(), own.join(", ")));
+        lines.extend(left_out::summary(&measurement.left_out).map(|summary| format!("    left out {summary}")));
     }
     let rms = |cost: f64| (cost / fitted.samples as f64).sqrt();
     lines.push(format!(
@@ -288,6 +309,7 @@ fn json(fits: &Fits, measurements: &[Measurement]) -> String {
         .map(|(scan, measurement)| {
             json!({
                 "scan": measurement.label(),
+                "left_out": measurement.left_out,
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
                 "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
                 "provenance": of_input(&measurement.about, Some(&best.options)),

@@ -183,8 +183,10 @@ fn a_run_that_stands_apart_is_named() {
         (width["unit"].as_str(), width["budget"]["type_b"].as_f64()),
         (Some("deg"), Some(0.0))
     );
-    // One run, a choice of models, and parameters to share make no repeats.
+    // One run, copies of a run, a choice of models, and parameters to share make no repeats.
     assert!(fail(&["joint", "--repeats", &files[0]]).contains("two or more"));
+    let copy = write(&folder, "copy.csv", std::fs::read(&files[0]).unwrap());
+    assert!(fail(&["joint", "--repeats", &files[0], &files[1], &copy]).contains("run 3 has the same samples as run 1"));
     assert!(fail(&["joint", "--repeats", "--terms", "auto", &files[0], &files[1]]).contains("one model"));
     assert!(fail(&["joint", "--repeats", "--share", "m", &files[0], &files[1]]).contains("--share"));
 }

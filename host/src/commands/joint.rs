@@ -155,6 +155,15 @@ fn run_repeats(arguments: &Arguments, given: &[OsString], streams: &mut Streams)
     if measurements.len() < 2 {
         return Err(Error::new("one run has no repeats").help("give two or more"));
     }
+    for (place, run) in measurements.iter().enumerate() {
+        let same = |other: &Measurement| other.samples == run.samples;
+        if let Some(before) = measurements[..place].iter().position(same) {
+            let what = format!("run {} has the same samples as run {}", place + 1, before + 1);
+            return Err(Error::new(what)
+                .in_file(run.label())
+                .help("give each run once: a copy tells nothing of what changes between runs"));
+        }
+    }
     // The calibration is the same for all runs, and enters once.
     let mut alone = options;
     alone.instrument.scale_uncertainty = 0.0;

@@ -113,6 +113,25 @@ fn fit_and_batch_honour_all() {
 }
 
 #[test]
+fn an_offset_that_nothing_tells_has_no_number() {
+    let folder = TempDir::new().unwrap();
+    let row = |k: i32| format!("30,{},{}\n", 2 * k, 0.1 + 0.001 * f64::from(k.rem_euclid(3)));
+    let table: String = (-35..=35).map(row).collect();
+    let file = write(
+        &folder,
+        "flat.csv",
+        format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{table}"),
+    );
+    let flat = ["fit", &file, "--terms", "diffuse", "--fit-offset"];
+    assert!(succeed(&flat).contains("\n  offset     not determined"));
+    let fit = json(&flat);
+    assert!(
+        fit["offset_deg"].is_null() && fit["offset_stderr_deg"].is_null(),
+        "{fit}"
+    );
+}
+
+#[test]
 fn text_and_report_honour_all() {
     let folder = TempDir::new().unwrap();
     let file = scan(&folder);

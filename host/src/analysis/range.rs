@@ -16,7 +16,7 @@ use crate::engine::{FitOptions, Outcome, Values};
 ///
 /// A parameter on a bound lies no farther inside than the other bound.
 /// A weight on its lower bound that may, within its 95 % interval, reflect more than arrives is not limited by the scan: it is [`Place::Unseen`], and stays out of the errors of all else.
-/// The standard error of a parameter whose 95 % interval is all that its bounds allow is infinite.
+/// The standard error of a parameter whose 95 % interval is all that its bounds allow is infinite; so is that of an offset of theta_s.
 pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outcome) -> Outcome {
     let model = outcome.model;
     let count = model.parameters.len();
@@ -71,6 +71,11 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
             false => error,
         }
     });
+    if let (Some(offset), Some((least, most))) = (&mut outcome.offset, options.instrument.offsets)
+        && !(factor * offset.stderr < most - least)
+    {
+        offset.stderr = f64::INFINITY;
+    }
     outcome
 }
 

@@ -3,6 +3,7 @@
 use crate::analysis::fit::FittedScan;
 use crate::engine::FitOptions;
 use crate::number::{percent, shortest, six, two};
+use crate::result::words::NOT_DETERMINED;
 
 /// A reflectance from here on is held by `--conserve-energy`.
 const HELD: f64 = 1.0 - 1e-4;
@@ -22,7 +23,10 @@ pub fn lines(fit: &FittedScan) -> Vec<(&'static str, String)> {
         let (size, side) = (six(value.abs()), if value < 0.0 { "little" } else { "much" });
         lines.push((
             "offset",
-            format!("theta_s reads {size} +- {} deg too {side}{end}", two(error)),
+            match error.is_finite() {
+                true => format!("theta_s reads {size} +- {} deg too {side}{end}", two(error)),
+                false => format!("{NOT_DETERMINED}: nothing in this fit tells where theta_s is 0"),
+            },
         ));
     }
     if let Some(sigma) = outcome.sigma {

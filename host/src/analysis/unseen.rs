@@ -67,6 +67,11 @@ pub fn is_exact(known: &Uncertainty) -> bool {
     known.degrees_of_freedom > 0 && exact(known.scale)
 }
 
+/// Has nothing a standard error, since the fit is exact and no standard deviations of the file are taken for them?
+pub fn without_errors(known: &Uncertainty) -> bool {
+    is_exact(known) && known.effective.is_finite()
+}
+
 /// Is a standard deviation of residuals of ln f but rounding?
 pub fn exact(scale: f64) -> bool {
     scale < EXACT

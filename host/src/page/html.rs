@@ -139,7 +139,7 @@ fn summary(section: &Section) -> Markup {
                     " With the standard deviations of the file, χ" sup { "2" } " is " (number(chi2)) " of " (known.degrees_of_freedom) " degrees of freedom."
                 }
             }
-            @if unseen::is_exact(known) { li.flag { (capital(words::EXACT)) "." } }
+            @if unseen::without_errors(known) { li.flag { (capital(words::EXACT)) "." } }
             @let unseen = unseen::names(outcome);
             @if !unseen.is_empty() { li.flag { (words::unseen(&unseen)) "." } }
             @if let Some(misfit) = &known.misfit {
@@ -295,7 +295,7 @@ fn minima(section: &Section) -> Markup {
 fn angles(section: &Section) -> Markup {
     let fit = &section.fit;
     let known = &fit.outcome.uncertainty;
-    let without = unseen::is_exact(known) || known.degrees_of_freedom == 0;
+    let without = unseen::without_errors(known) || known.degrees_of_freedom == 0;
     let with_error = |value| minus(&shown(value, without).replace("+-", "±"));
     html! {
         table {

@@ -150,7 +150,7 @@ pub fn known(outcome: &Outcome, derived: &[Derived]) -> Known {
         correlation: ByName::new(model, |i| ByName::new(model, |j| known.correlation[i][j])),
         on_bound: on_bound.collect(),
         not_seen: unseen::names(outcome),
-        exact: unseen::is_exact(known),
+        exact: unseen::without_errors(known),
         undetermined: open.collect(),
     }
 }

@@ -20,7 +20,7 @@ const LISTED: usize = 12;
 pub fn remark(index: usize, known: &Uncertainty) -> String {
     match known.places[index] {
         Some(Place::Inside) if known.stderr[index].is_finite() => format!("  +- {}", two(known.stderr[index])),
-        Some(Place::Inside) if !unseen::is_exact(known) && known.degrees_of_freedom > 0 => {
+        Some(Place::Inside) if !unseen::without_errors(known) && known.degrees_of_freedom > 0 => {
             format!("  {NOT_DETERMINED}")
         }
         Some(Place::Inside) | None => String::new(),
@@ -56,7 +56,7 @@ pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<Stri
         known.degrees_of_freedom,
         two(known.condition)
     ));
-    if unseen::is_exact(known) {
+    if unseen::without_errors(known) {
         lines.push(format!("    {EXACT}"));
     }
     let unseen = unseen::names(outcome);
@@ -96,7 +96,7 @@ pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<Stri
     if !strong.is_empty() {
         lines.push(format!("    correlated: {}", strong.join(", ")));
     }
-    lines.extend(table(derived, unseen::is_exact(known)));
+    lines.extend(table(derived, unseen::without_errors(known)));
     lines
 }
 

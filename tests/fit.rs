@@ -175,6 +175,16 @@ fn csv_and_json_have_the_same_values() {
     let table = succeed(&["fit", &file, "--robust", "--format", "csv"]);
     let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
     let (head, row) = (rows.next().unwrap(), rows.next().unwrap());
+    // What is not determined is named in both, whatever the order.
+    let sets = object["uncertainty"]["undetermined"].as_array().unwrap();
+    let names = sets.iter().flat_map(|one| one["parameters"].as_array().unwrap());
+    let mut open: Vec<&str> = names.map(|name| name.as_str().unwrap()).collect();
+    let place = head.iter().position(|&name| name == "undetermined").unwrap();
+    let mut cell: Vec<&str> = row[place].split('+').collect();
+    open.sort_unstable();
+    cell.sort_unstable();
+    assert!(!open.is_empty());
+    assert_eq!(cell, open);
     let mut compared = Vec::new();
     for (name, cell) in head.into_iter().zip(row) {
         if let Some(parameter) = name.strip_prefix("stderr_") {

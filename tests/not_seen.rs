@@ -18,6 +18,55 @@ fn fitted(file: &str, more: &[&str]) -> Value {
     serde_json::from_str(&ran.output).unwrap()
 }
 
+/// Thirty samples of one direction tell of no reflectance: no output has a number of it, or of the energy.
+#[test]
+fn what_is_not_determined_has_no_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: usize| format!("30,10,{}\n", 0.1 + 0.001 * (k * k % 7) as f64);
+    let table = "theta_i_deg,theta_s_deg,brdf_per_sr\n".to_string() + &(0..30).map(row).collect::<String>();
+    let file = program::write(&folder, "one.csv", table);
+    let text = program::succeed(&["fit", &file, "--repeats"]);
+    assert!(text.contains("not determined") && !text.contains("ABOVE 1"), "{text}");
+    let fit: Value = serde_json::from_str(&program::succeed(&["fit", &file, "--repeats", "--format", "json"])).unwrap();
+    let at = &fit["derived"][0];
+    assert_eq!(at["reflectance"], serde_json::json!({"value": null, "stderr": null}));
+    assert_eq!(at["energy_conserved"], Value::Null);
+    let batch = folder.path().join("batch.csv").to_str().unwrap().to_string();
+    program::succeed(&["batch", &file, "--repeats", "--out", &batch]);
+    let of_fit = program::succeed(&["fit", &file, "--repeats", "--format", "csv"]);
+    for table in [of_fit, std::fs::read_to_string(&batch).unwrap()] {
+        let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+        let (head, row) = (rows.next().unwrap(), rows.next().unwrap());
+        let cell = |name: &str| row[head.iter().position(|&column| column == name).unwrap()];
+        assert_eq!((cell("reflectance_least_theta_i"), cell("energy_conserved")), ("", ""));
+        assert_eq!(cell("undetermined"), "rho_d+rho_s+rho_v+m+n+kappa");
+    }
+}
+
+/// Errors that are taken from the file are not denied, however exact the fit is.
+#[test]
+fn an_exact_fit_may_have_the_errors_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let material = Material::paper([0.1, 1.0, 0.0, 0.1, 1.5, 0.0]);
+    let row = |k: i32| {
+        let theta_s = f64::from(2 * k);
+        let f = material
+            .ln_f(&Sample::in_plane(30f64.to_radians(), theta_s.to_radians(), 1.0))
+            .unwrap()
+            .exp();
+        format!("30,{theta_s},{f},{}\n", 0.02 * f)
+    };
+    let table = "theta_i_deg,theta_s_deg,brdf_per_sr,sigma\n".to_string() + &(-40..=40).map(row).collect::<String>();
+    let file = program::write(&folder, "exact.csv", table);
+    let fit = |more: &[&str]| {
+        program::succeed(&[&["fit", &file, "--terms", "diffuse,surface", "--fix", "n=1.5"], more].concat())
+    };
+    let denied = "nothing has a standard error";
+    let (usual, absolute) = (fit(&[]), fit(&["--absolute-sigma"]));
+    assert!(usual.contains(denied), "{usual}");
+    assert!(absolute.contains("+-") && !absolute.contains(denied), "{absolute}");
+}
+
 /// Made with rho_v = 0, and without samples around retro: a narrow lobe there costs nothing, whatever its weight.
 #[test]
 fn a_lobe_between_the_samples_is_left_out() {

@@ -10,7 +10,8 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
 use super::misfit::coverage_factor;
-use super::reflectance::{reflectance, reflectance_alone};
+use super::reflectance::reflectance;
+use super::unseen::without_errors;
 use crate::engine::uncertainty::Uncertainty;
 use crate::engine::{Material, Values, View};
 use from_data::{Line, Read};
@@ -56,15 +57,22 @@ pub struct Derived {
 }
 
 impl Derived {
-    /// Does no more light leave than arrives?
-    pub fn conserves_energy(&self) -> bool {
-        conserves_energy(self.reflectance.value)
+    /// Does no more light leave than arrives? None where the reflectance is not [`determined`].
+    pub fn conserves_energy(&self, known: &Uncertainty) -> Option<bool> {
+        conserve_energy(&[determined(self.reflectance, known)])
     }
 }
 
-/// Does no more light leave than arrives, by a reflectance?
-pub fn conserves_energy(reflectance: f64) -> bool {
-    reflectance <= 1.0
+/// Does no more light leave than arrives, by all reflectances? None where those that are not determined decide.
+pub fn conserve_energy(reflectances: &[Option<f64>]) -> Option<bool> {
+    let above = reflectances.iter().flatten().any(|reflectance| !(*reflectance <= 1.0));
+    (above || reflectances.iter().all(Option::is_some)).then_some(!above)
+}
+
+/// A value that the fit determines; where it tells no errors at all nothing is known to be undetermined.
+pub fn determined(value: Value, known: &Uncertainty) -> Option<f64> {
+    let told = value.stderr.is_finite() || known.degrees_of_freedom == 0 || without_errors(known);
+    told.then_some(value.value)
 }
 
 /// A value whose 95 % interval, of `factor` standard errors to each side, is wider than `range` to each side has none: its standard error is infinite.
@@ -88,10 +96,28 @@ pub fn at_each_angle(samples: &[Sample<f64>], view: impl Into<View>, known: &Unc
     angles(samples).into_iter().map(one).collect()
 }
 
-/// The value of [`Derived::reflectance`] at each of the same angles.
-pub fn reflectances(samples: &[Sample<f64>], material: &Material) -> Vec<f64> {
-    let one = |theta_i: f64| reflectance_alone(material, theta_i);
+/// [`Derived::reflectance`] at each of the same angles.
+pub fn reflectances(samples: &[Sample<f64>], material: &Material, known: &Uncertainty) -> Vec<Value> {
+    let factor = coverage_factor(known);
+    let one = |theta_i: f64| reflectance_at(theta_i, material, known, factor);
     angles(samples).into_iter().map(one).collect()
+}
+
+fn reflectance_at(theta_i: f64, material: &Material, known: &Uncertainty, factor: f64) -> Value {
+    let (sum, gradient) = reflectance(material, theta_i);
+    with_error((sum, gradient), material, known, factor)
+}
+
+/// A quantity with its gradient, of which no surface has more than it receives.
+fn with_error((value, mut gradient): (f64, Values), material: &Material, known: &Uncertainty, factor: f64) -> Value {
+    for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
+        // What a parameter of its own size does not change does not depend on it, however unknown that is.
+        if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
+            *slope = 0.0;
+        }
+    }
+    let stderr = known.stderr_of(&gradient);
+    told(Value { value, stderr }, value.max(1.0), factor)
 }
 
 /// The angles of incidence, ascending, without those that count as one with another.
@@ -110,17 +136,6 @@ pub fn at(theta_i: f64, material: &Material, known: &Uncertainty) -> Derived {
 /// The same where it is known how many standard errors are the half of a 95 % interval.
 fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f64, line: Option<&Line>) -> Derived {
     let slopes = material.off_zero();
-    // No surface reflects more than it receives.
-    let value = |value: f64, mut gradient: Values| {
-        for (slope, parameter) in gradient.iter_mut().zip(material.values.iter()) {
-            // What a parameter of its own size does not change does not depend on it, however unknown that is.
-            if slope.abs() * parameter.abs().max(1.0) <= f64::EPSILON * value {
-                *slope = 0.0;
-            }
-        }
-        let stderr = known.stderr_of(&gradient);
-        told(Value { value, stderr }, value.max(1.0), factor)
-    };
     let product = |rho: &str| {
         let place = |name: &str| material.model.place(name);
         let (rho, n, kappa) = (place(rho)?, place("n")?, place("kappa"));
@@ -137,7 +152,7 @@ fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f
             (at(rho) * f, gradient)
         };
         let product = of(material).0;
-        (product > 0.0).then(|| value(product, of(&slopes).1))
+        (product > 0.0).then(|| with_error((product, of(&slopes).1), material, known, factor))
     };
     let rho_s_f = product("rho_s");
     Derived {
@@ -145,10 +160,7 @@ fn with_factor(theta_i: f64, material: &Material, known: &Uncertainty, factor: f
         rho_s_f,
         rho_v_f: product("rho_v"),
         peak: rho_s_f.and_then(|product| peak(theta_i, material, known, (product.value, factor), line)),
-        reflectance: {
-            let (sum, gradient) = reflectance(material, theta_i);
-            value(sum, gradient)
-        },
+        reflectance: reflectance_at(theta_i, material, known, factor),
     }
 }
 

@@ -58,8 +58,8 @@ pub struct FittedScan {
     pub left_out_by_auto: u8,
     /// Why this model and these terms, if the scan chose them.
     pub choice: Option<Choice>,
-    /// Directional-hemispherical reflectance at each angle of incidence in ascending order, dimensionless; above 1 the model makes energy.
-    pub reflectances: Vec<f64>,
+    /// Directional-hemispherical reflectance at each angle of incidence in ascending order, dimensionless; above 1 the model makes energy, and none where the scan does not determine it.
+    pub reflectances: Vec<Option<f64>>,
     /// What follows from it at each angle of incidence, if all is told.
     pub derived: Vec<Derived>,
     /// The cost that the search had found, if another fit then led lower.
@@ -121,10 +121,15 @@ impl FittedScan {
             Told::All => derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty),
             Told::Columns => Vec::new(),
         };
-        let reflectances = match told {
-            Told::All => derived.iter().map(|at| at.reflectance.value).collect(),
-            Told::Columns => derived::reflectances(&samples, &outcome.material()),
+        let reflectances: Vec<derived::Value> = match told {
+            Told::All => derived.iter().map(|at| at.reflectance).collect(),
+            Told::Columns => derived::reflectances(&samples, &outcome.material(), &outcome.uncertainty),
         };
+        let determined = reflectances
+            .iter()
+            .map(|&value| derived::determined(value, &outcome.uncertainty));
+        let determined = determined.collect();
+        let reflectances: Vec<f64> = reflectances.iter().map(|reflectance| reflectance.value).collect();
         FittedScan {
             file: measurement.file.clone(),
             scan: measurement.name.clone(),
@@ -136,7 +141,7 @@ impl FittedScan {
                 true => Vec::new(),
                 false => hints::of_fit(measurement, options, &outcome, &reflectances),
             },
-            reflectances,
+            reflectances: determined,
             derived,
             options: *options,
             chi2: measurement

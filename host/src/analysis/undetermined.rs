@@ -20,19 +20,16 @@ pub struct Undetermined {
     pub through: Vec<(&'static str, f64)>,
 }
 
-/// What `known` leaves open.
-///
-/// A parameter is open if its standard error, with no other parameter held by a bound, is above [`LOOSE`] of itself; for kappa, which may be 0, of 1 at least.
-/// rho_s or rho_v with n or kappa counts as determined through its product with F, if that is known to [`TIGHT`] at some angle of incidence.
-pub fn undetermined(material: &Material, known: &Uncertainty, derived: &[Derived]) -> Vec<Undetermined> {
+/// The parameters that are open: the standard error, with no other parameter held by a bound, is above [`LOOSE`] of the parameter itself; for kappa, which may be 0, of 1 at least.
+pub fn open(material: &Material, known: &Uncertainty) -> impl Iterator<Item = &'static str> {
     let values = &material.values;
-    let name = |index: usize| material.model.parameters[index].name;
-    let open = |index: usize| match known.places[index] {
+    let parameters = material.model.parameters;
+    let open = move |&index: &usize| match known.places[index] {
         None | Some(Place::Fixed) => false,
         // A weight that no sample sees is said to be that, and stays out of all else.
-        Some(Place::Unseen) => !material.model.parameters[index].is_weight(),
+        Some(Place::Unseen) => !parameters[index].is_weight(),
         Some(_) => {
-            let size = if name(index) == "kappa" {
+            let size = if parameters[index].name == "kappa" {
                 values[index].max(1.0)
             } else {
                 values[index]
@@ -40,7 +37,14 @@ pub fn undetermined(material: &Material, known: &Uncertainty, derived: &[Derived
             size > 0.0 && known.stderr_lifted[index] > LOOSE * size
         }
     };
-    let mut open: Vec<&'static str> = (0..values.len()).filter(|&k| open(k)).map(name).collect();
+    (0..values.len()).filter(open).map(move |index| parameters[index].name)
+}
+
+/// What `known` leaves open.
+///
+/// rho_s or rho_v with n or kappa counts as determined through its product with F, if that is known to [`TIGHT`] at some angle of incidence.
+pub fn undetermined(material: &Material, known: &Uncertainty, derived: &[Derived]) -> Vec<Undetermined> {
+    let mut open: Vec<&'static str> = open(material, known).collect();
     let mut found = Vec::new();
     let index_is_open = open.contains(&"n") || open.contains(&"kappa");
     let tightest = |of: fn(&Derived) -> Option<Value>| {

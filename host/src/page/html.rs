@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::provenance;
 use super::section::{Section, Table};
 use crate::analysis::choose::Choice;
-use crate::analysis::derived::{Derived, Value};
+use crate::analysis::derived::Value;
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
@@ -149,7 +149,7 @@ fn summary(section: &Section) -> Markup {
             @for open in undetermined(&outcome.material(), known, &fit.derived) {
                 li.flag { @if !open.through.is_empty() { "The scan tells of " } (words::sentence(&open)) "." }
             }
-            @if !fit.derived.iter().all(Derived::conserves_energy) {
+            @if fit.derived.iter().any(|at| at.conserves_energy(known) == Some(false)) {
                 li.flag { "The reflectance is above 1 at some angle of incidence: there the fitted model does not conserve energy." }
             }
             @if section.missed() {
@@ -315,7 +315,7 @@ fn angles(section: &Section) -> Markup {
                     td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
                     td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
-                    td { (with_error(at.reflectance)) @if !at.conserves_energy() { " (above 1)" } }
+                    td { (with_error(at.reflectance)) @if at.conserves_energy(known) == Some(false) { " (above 1)" } }
                 } }
             }
         }

@@ -6,10 +6,11 @@ use brdfit_core::model::Parameter;
 use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
-use crate::analysis::derived::conserves_energy;
+use crate::analysis::derived::conserve_energy;
 use crate::analysis::deviations::Verdict;
 use crate::analysis::fit::FittedScan;
 use crate::analysis::misfit::coverage_factor;
+use crate::analysis::undetermined::open;
 use crate::engine::{FitOptions, Minimum, Model, Outcome, Values};
 use crate::names;
 use crate::number::shortest;
@@ -300,7 +301,13 @@ fn known(models: &[&Model]) -> Vec<Column> {
         Json::Otherwise,
         |row| Some(row.outcome.uncertainty.misfit?.factor.1),
     );
-    [degrees, factor, over, times]
+    let open = words(
+        "undetermined",
+        "parameters that are not determined, or only through a product",
+        Json::Otherwise,
+        |row| open(&row.outcome.material(), &row.outcome.uncertainty).collect(),
+    );
+    [degrees, factor, over, times, open]
         .into_iter()
         .chain(every(models).into_iter().map(one))
         .collect()
@@ -310,7 +317,7 @@ fn known(models: &[&Model]) -> Vec<Column> {
 fn of_scan() -> Vec<Column> {
     use Json::{Found, Otherwise, Time};
     let proved = "proved: no parameters within the bounds have an MSE^2 below 1 less this of that of the fit";
-    let conserved = "reflectance of at most 1 at each angle of incidence";
+    let conserved = "reflectance of at most 1 at each angle of incidence, if that is determined";
     let worst = "angle of incidence where the residual is largest";
     let least = "directional-hemispherical reflectance at the least angle of incidence";
     vec![
@@ -324,7 +331,7 @@ fn of_scan() -> Vec<Column> {
             Some(worst.degrees())
         }),
         number("reflectance_least_theta_i", "1", least, Otherwise, |row| {
-            row.scan?.reflectances.first().copied()
+            row.scan?.reflectances.first().copied().flatten()
         }),
         number(
             "chi2",
@@ -347,7 +354,7 @@ fn of_scan() -> Vec<Column> {
             Some(row.scan?.left_out.iter().map(|one| one.samples as u64).sum())
         }),
         flag("energy_conserved", conserved, Otherwise, |row| {
-            Some(row.scan?.reflectances.iter().copied().all(conserves_energy))
+            conserve_energy(&row.scan?.reflectances)
         }),
         number("certified_eps", "1", proved, Otherwise, |row| row.scan?.proof?.within()),
         whole("certificate_boxes", "boxes of the proof", Otherwise, |row| {

@@ -124,7 +124,11 @@ fn document(scan: &FittedScan) -> Document<'_> {
         bounds: Columns(scan, Json::Bounds),
         selection: scan.choice.as_ref().map(selection),
         uncertainty: known(outcome, &scan.derived),
-        derived: scan.derived.iter().map(at_angle).collect(),
+        derived: scan
+            .derived
+            .iter()
+            .map(|at| at_angle(at, &outcome.uncertainty))
+            .collect(),
         end: Columns(scan, Json::End),
         minima: outcome.minima.iter().map(minimum).collect(),
         certificate: scan.proof.as_ref().and_then(certificate),

@@ -4,12 +4,12 @@ use brdfit_core::uncertainty::Place;
 use serde::Serialize;
 
 use super::by_name::ByName;
-use crate::analysis::derived::{Derived, Value};
+use crate::analysis::derived::{Derived, Value, determined};
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
 use crate::engine::Outcome;
-use crate::engine::uncertainty::Misfit;
+use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::result::words::{correlated, from_data, sentence};
 
 /// What is known of the parameters.
@@ -94,7 +94,8 @@ pub struct AtAngle {
     /// Peak and width as the samples show them where residuals are correlated; each stderr is the part of the error above that their difference makes.
     from_data: Option<FromData>,
     reflectance: Number,
-    energy_conserved: bool,
+    /// Null where the reflectance is not determined.
+    energy_conserved: Option<bool>,
 }
 
 #[derive(Serialize)]
@@ -105,12 +106,9 @@ struct FromData {
 
 #[derive(Serialize)]
 struct Number {
-    value: f64,
+    /// Null where it is not determined.
+    value: Option<f64>,
     stderr: f64,
-}
-
-fn number(Value { value, stderr }: Value) -> Number {
-    Number { value, stderr }
 }
 
 /// The uncertainty of one fit.
@@ -156,9 +154,13 @@ pub fn known(outcome: &Outcome, derived: &[Derived]) -> Known {
 }
 
 /// The derived quantities of one angle of incidence.
-pub fn at_angle(at: &Derived) -> AtAngle {
+pub fn at_angle(at: &Derived, known: &Uncertainty) -> AtAngle {
+    let number = |value: Value| Number {
+        value: determined(value, known),
+        stderr: value.stderr,
+    };
     let degrees = |width: Value| Number {
-        value: width.value.to_degrees(),
+        value: determined(width, known).map(f64::to_degrees),
         stderr: width.stderr.to_degrees(),
     };
     AtAngle {
@@ -173,6 +175,6 @@ pub fn at_angle(at: &Derived) -> AtAngle {
             width_deg: read.width.map(degrees),
         }),
         reflectance: number(at.reflectance),
-        energy_conserved: at.conserves_energy(),
+        energy_conserved: at.conserves_energy(known),
     }
 }

@@ -96,12 +96,13 @@ pub fn lines(outcome: &Outcome, derived: &[Derived], weighted: bool) -> Vec<Stri
     if !strong.is_empty() {
         lines.push(format!("    correlated: {}", strong.join(", ")));
     }
-    lines.extend(table(derived, unseen::without_errors(known)));
+    lines.extend(table(derived, known));
     lines
 }
 
 /// One row an angle of incidence; of an exact fit without errors.
-fn table(derived: &[Derived], exact: bool) -> Vec<String> {
+fn table(derived: &[Derived], known: &Uncertainty) -> Vec<String> {
+    let exact = unseen::without_errors(known);
     let shown = |value: Value| words::shown(value, exact);
     let row = |cells: [String; 6]| {
         let [theta_i, rho_s_f, rho_v_f, peak, width, reflectance] = cells;
@@ -126,10 +127,9 @@ fn table(derived: &[Derived], exact: bool) -> Vec<String> {
             value: value.value.to_degrees(),
             stderr: value.stderr.to_degrees(),
         };
-        let excess = if at.conserves_energy() {
-            ""
-        } else {
-            "  ABOVE 1: energy is not conserved"
+        let excess = match at.conserves_energy(known) {
+            Some(false) => "  ABOVE 1: energy is not conserved",
+            _ => "",
         };
         lines.push(row([
             six(at.theta_i.to_degrees()),

@@ -8,6 +8,9 @@ use crate::input::unit::Unit;
 use crate::input::units::{Angles, Quantity};
 use crate::input::{channel, find, finder, uncertainty};
 
+/// Arrows that say that a name is of the first row.
+const ALONG: [&str; 3] = ["→", "->", "=>"];
+
 /// What a side of a matrix holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
@@ -76,7 +79,11 @@ impl Corner {
         if let Some((names, heads)) = pair(text) {
             return of_angles(names, unit_of_angles(&heads, options)?);
         }
+        // A single name with an arrow leaves the other side open, and may contradict the order that is usual.
         if let Some(names) = one(&whole) {
+            if text.contains('↓') || ALONG.iter().any(|arrow| text.contains(arrow)) {
+                return Err(not_understood(&whole));
+            }
             return of_angles(names, unit_of_angles(&[whole], options)?);
         }
         values(&whole, options)
@@ -108,7 +115,7 @@ fn pair(text: &str) -> Option<(Names, [Head; 2])> {
             return None;
         }
         // The first is of the column below, if no arrow says otherwise.
-        let turned = first.contains('→') || second.contains('↓');
+        let turned = ALONG.iter().any(|arrow| first.contains(arrow)) || second.contains('↓');
         let (side, top) = if turned { (axes[1], axes[0]) } else { (axes[0], axes[1]) };
         Some((Names::Both { side, top }, heads))
     })
@@ -240,6 +247,7 @@ mod tests {
                 Some(Angles::Deg),
             ),
             ("theta/phi", both(Scattering, Azimuth), None),
+            (r"theta_i -> \ theta_s", both(Scattering, Incidence), None),
             (r"raa\zenith", both(Azimuth, Scattering), None),
             (r"theta\theta_i", both(Scattering, Incidence), None),
         ] {
@@ -281,6 +289,7 @@ mod tests {
             ("relative angle to specular", "understood neither"),
             ("beta-beta0", "understood neither"),
             (r"theta_i\phi", "understood neither"),
+            ("theta_s →", "understood neither"),
             ("counts", "not in sr^-1"),
             ("R (%)", "in percent"),
         ] {

@@ -36,6 +36,7 @@ mod rows;
 mod sheet;
 pub mod side;
 pub mod source;
+mod spell;
 mod table;
 pub mod uncertainty;
 pub mod unit;

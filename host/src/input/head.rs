@@ -9,6 +9,8 @@ pub struct Head {
     pub text: String,
     /// The name without unit, case, spaces and punctuation; Greek letters are spelt.
     pub plain: String,
+    /// The places in that where something stood between two letters, or a capital began.
+    pub breaks: Vec<usize>,
     /// The unit, if it names one.
     pub unit: Option<Unit>,
     /// The coverage factor in `U (k=2)`.
@@ -21,6 +23,7 @@ impl Head {
         let mut head = Head {
             text: text.trim().to_string(),
             plain: String::new(),
+            breaks: Vec::new(),
             unit: None,
             coverage: None,
         };
@@ -70,7 +73,7 @@ impl Head {
             head.unit = unit;
             name = short.to_string();
         }
-        head.plain = plain(&name);
+        (head.plain, head.breaks) = with_breaks(&name);
         head
     }
 
@@ -98,32 +101,51 @@ fn coverage(text: &str) -> Option<f64> {
 
 /// A name without what people write differently: case, spaces, punctuation, a unit at the end; Greek letters are spelt.
 pub fn plain(name: &str) -> String {
+    with_breaks(name).0
+}
+
+/// The same with the places where something stood between two letters, or a capital began.
+fn with_breaks(name: &str) -> (String, Vec<usize>) {
     if ["+-", "+/-"].contains(&name.trim()) {
-        return "sigma".to_string();
+        return ("sigma".to_string(), Vec::new());
     }
     let name = Unit::at_end(name).0;
     let mut plain = String::with_capacity(name.len());
-    let mut letters = name.chars().flat_map(char::to_lowercase).peekable();
-    while let Some(c) = letters.next() {
-        match c {
-            'θ' | 'ϑ' => plain.push_str("theta"),
-            'φ' | 'ϕ' => plain.push_str("phi"),
-            'δ' | '∆' => plain.push_str("delta"),
-            'λ' => plain.push_str("lambda"),
-            'σ' => plain.push_str("sigma"),
-            '±' => plain.push_str("sigma"),
-            'ᵢ' => plain.push('i'),
-            'ᵣ' => plain.push('r'),
-            'ₛ' => plain.push('s'),
-            'ₒ' => plain.push('o'),
-            '₀' => plain.push('0'),
-            // A point counts within a number alone.
-            '.' if letters.peek().is_some_and(char::is_ascii_digit) => plain.push(c),
-            c if c.is_alphanumeric() => plain.push(c),
-            _ => {}
+    let mut breaks: Vec<usize> = Vec::new();
+    let mut was_small = false;
+    let mut letters = name.chars().peekable();
+    while let Some(written) = letters.next() {
+        let next = letters.peek();
+        let begin = plain.len();
+        let is_capital = written.is_uppercase() && was_small;
+        was_small = written.is_lowercase();
+        for c in written.to_lowercase() {
+            match c {
+                'θ' | 'ϑ' => plain.push_str("theta"),
+                'φ' | 'ϕ' => plain.push_str("phi"),
+                'δ' | '∆' => plain.push_str("delta"),
+                'λ' => plain.push_str("lambda"),
+                'σ' => plain.push_str("sigma"),
+                '±' => plain.push_str("sigma"),
+                'ᵢ' => plain.push('i'),
+                'ᵣ' => plain.push('r'),
+                'ₛ' => plain.push('s'),
+                'ₒ' => plain.push('o'),
+                '₀' => plain.push('0'),
+                // A point counts within a number alone.
+                '.' if next.is_some_and(char::is_ascii_digit) => plain.push(c),
+                // The number of an angle in a list is no angle.
+                '#' if begin > 0 => plain.push_str("no"),
+                c if c.is_alphanumeric() => plain.push(c),
+                _ => {}
+            }
+        }
+        let is_break = is_capital || plain.len() == begin;
+        if is_break && begin > 0 && breaks.last() != Some(&begin) {
+            breaks.push(begin);
         }
     }
-    plain
+    (plain, breaks)
 }
 
 #[cfg(test)]

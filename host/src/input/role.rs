@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::head::Head;
+use super::spell::{Word, spell};
 use super::unit::Unit;
 use super::units::Quantity;
 
@@ -68,7 +69,7 @@ pub enum Look {
 const QUANTITIES: [&[&str]; 6] = [
     &["brdf", "bsdf", "fr", "f"],
     &["lnbrdf", "lnfr", "lnf"],
-    &["log10brdf", "logbrdf", "log10fr", "log10f"],
+    &["log10brdf", "logbrdf", "logfr", "logf", "log10fr", "log10f"],
     &[
         "brdfcos",
         "ccbrdf",
@@ -85,138 +86,6 @@ const QUANTITIES: [&[&str]; 6] = [
         "pibrdf",
     ],
     &["brfcos", "brfcosthetas"],
-];
-
-/// A kind of word within the name of an angle.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Word {
-    Polar,
-    Angle,
-    Azimuth,
-    Incidence,
-    Scattering,
-    Difference,
-    Filler,
-}
-
-/// Words that names of angles are made of; those of one letter count only beside the name of an angle.
-const WORDS: [(&str, Word); 115] = [
-    ("theta", Word::Polar),
-    ("th", Word::Polar),
-    ("zenith", Word::Polar),
-    ("zen", Word::Polar),
-    ("polar", Word::Polar),
-    ("angle", Word::Angle),
-    ("ang", Word::Angle),
-    ("phi", Word::Azimuth),
-    ("ph", Word::Azimuth),
-    ("varphi", Word::Azimuth),
-    ("azimuthal", Word::Azimuth),
-    ("azimuth", Word::Azimuth),
-    ("azimut", Word::Azimuth),
-    ("azim", Word::Azimuth),
-    ("azm", Word::Azimuth),
-    ("azi", Word::Azimuth),
-    ("az", Word::Azimuth),
-    ("incidence", Word::Incidence),
-    ("incident", Word::Incidence),
-    ("incoming", Word::Incidence),
-    ("inc", Word::Incidence),
-    ("input", Word::Incidence),
-    ("in", Word::Incidence),
-    ("illumination", Word::Incidence),
-    ("illuminant", Word::Incidence),
-    ("illum", Word::Incidence),
-    ("ill", Word::Incidence),
-    ("lighting", Word::Incidence),
-    ("light", Word::Incidence),
-    ("source", Word::Incidence),
-    ("src", Word::Incidence),
-    ("solar", Word::Incidence),
-    ("sun", Word::Incidence),
-    ("lamp", Word::Incidence),
-    ("laser", Word::Incidence),
-    ("beam", Word::Incidence),
-    ("i", Word::Incidence),
-    ("0", Word::Incidence),
-    ("scattering", Word::Scattering),
-    ("scattered", Word::Scattering),
-    ("scatter", Word::Scattering),
-    ("scatt", Word::Scattering),
-    ("scat", Word::Scattering),
-    ("sca", Word::Scattering),
-    ("sc", Word::Scattering),
-    ("reflection", Word::Scattering),
-    ("reflected", Word::Scattering),
-    ("reflect", Word::Scattering),
-    ("refl", Word::Scattering),
-    ("ref", Word::Scattering),
-    ("outgoing", Word::Scattering),
-    ("output", Word::Scattering),
-    ("out", Word::Scattering),
-    ("exitant", Word::Scattering),
-    ("exit", Word::Scattering),
-    ("emergence", Word::Scattering),
-    ("emergent", Word::Scattering),
-    ("emission", Word::Scattering),
-    ("emitted", Word::Scattering),
-    ("viewing", Word::Scattering),
-    ("viewer", Word::Scattering),
-    ("view", Word::Scattering),
-    ("observation", Word::Scattering),
-    ("observed", Word::Scattering),
-    ("observer", Word::Scattering),
-    ("obs", Word::Scattering),
-    ("sensor", Word::Scattering),
-    ("detection", Word::Scattering),
-    ("detector", Word::Scattering),
-    ("det", Word::Scattering),
-    ("camera", Word::Scattering),
-    ("receiving", Word::Scattering),
-    ("receiver", Word::Scattering),
-    ("receive", Word::Scattering),
-    ("rec", Word::Scattering),
-    ("measurement", Word::Scattering),
-    ("measuring", Word::Scattering),
-    ("measured", Word::Scattering),
-    ("measure", Word::Scattering),
-    ("meas", Word::Scattering),
-    ("goniometer", Word::Scattering),
-    ("s", Word::Scattering),
-    ("r", Word::Scattering),
-    ("o", Word::Scattering),
-    ("v", Word::Scattering),
-    ("e", Word::Scattering),
-    ("delta", Word::Difference),
-    ("relative", Word::Difference),
-    ("rel", Word::Difference),
-    ("minus", Word::Difference),
-    ("difference", Word::Difference),
-    ("diff", Word::Difference),
-    // German and French.
-    ("winkel", Word::Angle),
-    ("einfalls", Word::Incidence),
-    ("einstrahl", Word::Incidence),
-    ("beleuchtungs", Word::Incidence),
-    ("streu", Word::Scattering),
-    ("ausfalls", Word::Scattering),
-    ("reflexions", Word::Scattering),
-    ("beobachtungs", Word::Scattering),
-    ("detektor", Word::Scattering),
-    ("dincidence", Word::Incidence),
-    ("déclairage", Word::Incidence),
-    ("declairage", Word::Incidence),
-    ("dediffusion", Word::Scattering),
-    ("deréflexion", Word::Scattering),
-    ("dereflexion", Word::Scattering),
-    ("dobservation", Word::Scattering),
-    ("devue", Word::Scattering),
-    ("of", Word::Filler),
-    ("the", Word::Filler),
-    ("to", Word::Filler),
-    ("normal", Word::Filler),
-    ("deg", Word::Filler),
-    ("rad", Word::Filler),
 ];
 
 /// What the column of this head holds.
@@ -271,14 +140,19 @@ fn word(plain: &str) -> Option<Role> {
     })
 }
 
-/// The role of an angle whose name is made of [`WORDS`] alone.
+/// The role of an angle whose name is made of known words alone.
 fn angle(head: &Head) -> Option<Role> {
     // A `d` in front is a difference, and behind it the half angle of another parameterisation.
-    let (plain, difference) = match head.plain.strip_prefix('d') {
-        Some(rest) if rest.starts_with("phi") || rest.starts_with("az") || rest.starts_with("theta") => (rest, true),
-        _ => (head.plain.as_str(), false),
+    let (cut, difference) = match head.plain.strip_prefix('d') {
+        Some(rest) if rest.starts_with("phi") || rest.starts_with("az") || rest.starts_with("theta") => (1, true),
+        _ => (0, false),
     };
-    let words = spell(plain)?;
+    let breaks: Vec<usize> = head.breaks.iter().filter_map(|at| at.checked_sub(cut)).collect();
+    let words = spell(&head.plain[cut..], &breaks)?;
+    // Acidity, or an azimuth: which of them is not for a reader to guess.
+    if head.plain == "ph" {
+        return None;
+    }
     let has = |word: Word| words.contains(&word);
     let (incidence, scattering) = (has(Word::Incidence), has(Word::Scattering));
     // As in `phi_r - phi_i`.
@@ -308,27 +182,9 @@ fn angle(head: &Head) -> Option<Role> {
     }
 }
 
-/// The kinds of the words that the text is a row of, if it is one: from its end, so that no name takes long.
-fn spell(text: &str) -> Option<Vec<Word>> {
-    // At each place the word that begins there, if the rest is a row of words.
-    let mut words: Vec<Option<(&str, Word)>> = vec![None; text.len()];
-    for at in (0..text.len()).filter(|&at| text.is_char_boundary(at)).rev() {
-        let fits = |(word, _): &&(&str, Word)| {
-            let end = at + word.len();
-            text[at..].starts_with(word) && (end == text.len() || words[end].is_some())
-        };
-        words[at] = WORDS.iter().find(fits).copied();
-    }
-    let mut kinds = Vec::new();
-    let mut at = 0;
-    while let Some((word, kind)) = *words.get(at)? {
-        kinds.push(kind);
-        at += word.len();
-        if at == text.len() {
-            return Some(kinds);
-        }
-    }
-    None
+/// True of `ph` and `pho`, but not of acidity.
+fn may_be_azimuth(head: &Head) -> bool {
+    head.plain.len() < 4 && head.plain.starts_with("ph") && !head.text.contains("pH")
 }
 
 /// What an unknown column looks like.
@@ -364,7 +220,7 @@ fn look(head: &Head) -> Look {
         // The uncertainty of an angle.
         return Look::Other;
     }
-    if has(&ANGLES) || is(&["az", "el", "zen", "inc", "alpha", "beta", "gamma", "psi"]) {
+    if has(&ANGLES) || is(&["el", "inc", "alpha", "beta", "gamma", "psi"]) || may_be_azimuth(head) {
         return Look::Angle;
     }
     match head.unit {
@@ -441,6 +297,23 @@ mod tests {
     #[test]
     fn an_azimuth_of_no_direction() {
         all(Role::Phi, "phi, azimuth, azimuth angle, azi, φ [deg]");
+    }
+
+    #[test]
+    fn words_that_hold_short_names_are_no_angles() {
+        all(
+            Role::Unknown(Look::Other),
+            "V_ph, V ph, pH, sphere, range, orange, other, the, V_th, thin, azo, anger, U_th",
+        );
+        all(Role::Unknown(Look::Angle), "ph, PH, pho, rose (deg)");
+        all(Role::ThetaI, "th_i, thi, thI, i_theta, itheta, ang_i, theta(i), iAngle");
+        all(
+            Role::ThetaS,
+            "th_s, ths, th_r, th r, angs, r_ang, theta_out, thOut, Theta e, scAngle",
+        );
+        all(Role::PhiS, "ph_s, ph_r, ph r, phr, az_r, azr, phi(r), phiO");
+        all(Role::PhiI, "ph_i, az_i, AzIn, sun az, phi0");
+        all(Role::DeltaPhi, "rel_az, relaz, ph_r - ph_i");
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod cut;
 mod direction;
 pub mod doubt;
 mod facts;
+mod file_name;
 mod find;
 mod finder;
 pub mod format;

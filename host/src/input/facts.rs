@@ -13,6 +13,8 @@ use crate::plain::some_of;
 pub struct Facts {
     /// Line and angle of incidence in degrees, as often as it is named.
     pub theta_i: Vec<(u64, f64)>,
+    /// Line of the first angle of incidence that has no unit, which is taken for degrees.
+    pub theta_i_without_unit: Option<u64>,
     /// Line and azimuth in degrees, of whatever direction.
     pub azimuths: Vec<(u64, f64)>,
     /// Wavelength, nanometres.
@@ -47,7 +49,11 @@ impl Facts {
             self.scan = Some(value.to_string());
         }
         match role::role(&head) {
-            Role::ThetaI => self.theta_i.extend(degrees(&head, value).map(|angle| (line, angle))),
+            Role::ThetaI => {
+                self.theta_i.extend(degrees(&head, value).map(|angle| (line, angle)));
+                let has_unit = head.unit.is_some() || quantity(value).is_some_and(|(_, unit)| unit.is_some());
+                self.theta_i_without_unit = self.theta_i_without_unit.or((!has_unit).then_some(line));
+            }
             Role::PhiI | Role::PhiS | Role::DeltaPhi | Role::Phi => {
                 self.azimuths.extend(degrees(&head, value).map(|angle| (line, angle)));
             }
@@ -111,7 +117,9 @@ fn pairs(remark: &str) -> Vec<(&str, &str)> {
     let number = || {
         let at = remark.find(|c: char| c.is_ascii_digit() || "+-−".contains(c))?;
         let (key, value) = remark.split_at(at);
-        let role = role::role(&Head::new(key.strip_suffix(char::is_whitespace)?));
+        // `AOI # 3` is a number of a list.
+        let key = key.strip_suffix(char::is_whitespace).filter(|key| !key.contains('#'))?;
+        let role = role::role(&Head::new(key));
         matches!(role, Role::ThetaI | Role::Wavelength).then_some((key, value))
     };
     let cells = remark.split_once(['\t', ';', ',']).or_else(number);
@@ -160,69 +168,6 @@ pub fn angle_in(text: &str) -> Option<f64> {
         None | Some(Unit::Deg) => Some(number).filter(|number| number.is_finite()),
         _ => None,
     }
-}
-
-/// The angle of incidence in a file's name, degrees: after `aoi`, `theta_i`, `inc` and the like, before `deg`, or the only number that stands apart.
-///
-/// A number behind letters, one with a zero in front and one below 5 are more often counted: `paint7`, `scan_01`, `run 2`.
-///
-/// # Errors
-/// There are several such numbers.
-pub fn theta_i_of_name(file: &str) -> Result<Option<f64>, Error> {
-    let stem = std::path::Path::new(file)
-        .file_stem()
-        .map(|stem| stem.to_string_lossy().to_string());
-    let name = stem.unwrap_or_default();
-    let mut tagged: Vec<f64> = Vec::new();
-    let mut all: Vec<f64> = Vec::new();
-    let mut rest = name.as_str();
-    while let Some(begin) = rest.find(|c: char| c.is_ascii_digit()) {
-        let end = rest[begin..]
-            .find(|c: char| !c.is_ascii_digit() && c != '.')
-            .map_or(rest.len(), |end| begin + end);
-        let number = rest[begin..end].trim_end_matches('.');
-        let before = rest[..begin].trim_end_matches(['_', '-', ' ', '=', '(', '+']);
-        let after = rest[end..].trim_start_matches(['_', '-', ' ', ')']).to_lowercase();
-        let key = before.rsplit(['_', '-', ' ', '.', '(']).next().unwrap_or_default();
-        // `theta_i_20` has two parts in front of the number.
-        let two = before.rsplitn(3, ['_', '-', ' ', '.']).take(2).collect::<Vec<_>>();
-        let two = two.iter().rev().copied().collect::<Vec<_>>().join("_");
-        let keyed = |key: &str| {
-            role::role(&Head::new(key)) == Role::ThetaI
-                || ["inc", "incidence", "incident", "ti"].contains(&key.to_lowercase().as_str())
-        };
-        let other_unit = ["nm", "um", "mm", "cm", "hz", "k"]
-            .iter()
-            .any(|unit| after.starts_with(unit));
-        if let Ok(number) = number.parse::<f64>() {
-            if keyed(key) || keyed(&two) || ["deg", "°", "grad"].iter().any(|unit| after.starts_with(unit)) {
-                tagged.push(number);
-            } else if !other_unit && !is_counted(&rest[..begin], &rest[begin..end], number) {
-                all.push(number);
-            }
-        }
-        rest = &rest[end..];
-    }
-    let several = |numbers: &[f64]| {
-        Err(Error::new(format!(
-            "the name of the file may give theta_i as {} or {}",
-            numbers[0], numbers[1]
-        ))
-        .help("say which with --theta-i, in degrees"))
-    };
-    match (&tagged[..], &all[..]) {
-        (&[one], _) => Ok(Some(one)),
-        ([], &[one]) if (0.0..90.0).contains(&one) => Ok(Some(one)),
-        ([], [] | [_]) => Ok(None),
-        ([], numbers) => several(numbers),
-        (numbers, _) => several(numbers),
-    }
-}
-
-/// True of a number in a name that counts files or samples.
-fn is_counted(before: &str, text: &str, number: f64) -> bool {
-    let glued = before.ends_with(char::is_alphabetic);
-    glued || text.starts_with('0') && text.len() > 1 && !text.starts_with("0.") || number > 0.0 && number < 5.0
 }
 
 /// What is shown of an angle of incidence that a file does not have in a column.
@@ -294,35 +239,5 @@ mod tests {
         );
         let error = facts.one_theta_i().unwrap_err();
         assert_eq!(error.line, Some(9));
-    }
-
-    #[test]
-    fn names_of_files() {
-        for (name, angle) in [
-            ("dir3/scan_20.txt", Some(20.0)),
-            ("aoi45.csv", Some(45.0)),
-            ("paint_theta_i_22.5_run3.csv", Some(22.5)),
-            ("paint7_30deg.csv", Some(30.0)),
-            ("paint_550nm_inc60.csv", Some(60.0)),
-            ("ti=10.txt", Some(10.0)),
-            ("paint_633nm_20.dat", Some(20.0)),
-            ("paint.csv", None),
-            ("paint_550nm.csv", None),
-            ("run2026.csv", None),
-            ("paint7.csv", None),
-            ("scan_026.csv", None),
-            ("sample 3.csv", None),
-            ("paint7_20.csv", Some(20.0)),
-            ("aoi3.csv", Some(3.0)),
-            ("scan_0.csv", Some(0.0)),
-        ] {
-            assert_eq!(theta_i_of_name(name).unwrap(), angle, "{name}");
-        }
-        assert!(
-            theta_i_of_name("paint_7_20.csv")
-                .unwrap_err()
-                .to_string()
-                .contains("--theta-i")
-        );
     }
 }

@@ -1,10 +1,10 @@
 //! The angle of incidence of a scan whose table has none.
 
 use super::about::ThetaI;
-use super::facts;
 use super::options::ReadOptions;
 use super::raw::RawScan;
 use super::units::Angles;
+use super::{facts, file_name};
 use crate::error::Error;
 
 /// Gives the rows of a scan their angle of incidence, if the table has none: from the option, a remark, or the file's name.
@@ -26,7 +26,7 @@ pub fn give_theta_i(file: &str, scan: &mut RawScan, options: &ReadOptions) -> Re
     let (degrees, from) = match (given, named) {
         (Some(degrees), _) => (degrees, "--theta-i"),
         (None, Some(degrees)) => (degrees, "a remark"),
-        (None, None) => match facts::theta_i_of_name(file)? {
+        (None, None) => match file_name::theta_i(file)? {
             Some(degrees) => (degrees, "the name of the file"),
             None => return Err(facts::missing_theta_i(names)),
         },

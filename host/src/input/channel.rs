@@ -38,7 +38,8 @@ pub fn is(head: &Head) -> bool {
             || !is_angle && prefixed && number.is_finite()
             || !is_angle && wavelength::nanometres(number, None).is_ok() && (0.2..3e4).contains(&number)
     });
-    matches!(tag, "r" | "g" | "b" | "red" | "green" | "blue" | "y") && (prefixed || tag != "y")
+    // A radius has a length, and a colour none.
+    matches!(tag, "r" | "g" | "b" | "red" | "green" | "blue" | "y") && (prefixed || tag != "y" && !length)
         || prefixed
             && matches!(
                 tag,
@@ -88,6 +89,22 @@ pub fn refuse_count(heads: &[Head], channels: &[usize], options: &ReadOptions) -
     ))
     .at_column(bare[0].0 as u64 + 1)
     .help("give them a unit, such as 1um, or say --wavelength-unit um; if they count, name them such as brdf_1, or say which column is the values with --columns brdf=3"))
+}
+
+/// Refuses a logarithm that does not say to which base.
+///
+/// # Errors
+/// It is `log(BRDF)`: programs write ln so, and people log10.
+pub fn refuse_log(head: &Head) -> Result<(), Error> {
+    let is_ten = head.plain.starts_with("log10");
+    if is_ten || !head.plain.starts_with("log") || role::quantity(&head.plain) != Some(Quantity::Log10Brdf) {
+        return Ok(());
+    }
+    Err(Error::new(format!(
+        "'{}' may be the natural logarithm or that to base 10",
+        shown(&head.text)
+    ))
+    .help("say which: --quantity ln-brdf, or --quantity log10-brdf"))
 }
 
 /// What a channel's values are.

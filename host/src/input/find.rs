@@ -92,7 +92,9 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
         taken[column] = true;
         let single = !several && role::quantity(&heads[column].plain).is_some();
         if options.columns.is_empty() && options.quantity.is_none() {
-            channel::refuse_percent(&heads[column]).map_err(|error| error.at_column(column as u64 + 1))?;
+            let head = &heads[column];
+            let clear = channel::refuse_percent(head).and_then(|()| channel::refuse_log(head));
+            clear.map_err(|error| error.at_column(column as u64 + 1))?;
         }
         values.push(Value {
             column,
@@ -109,6 +111,7 @@ pub fn find(heads: Vec<Head>, options: &ReadOptions) -> Result<Columns, Error> {
         let coverage = heads[place].coverage.or(options.coverage).unwrap_or(1.0);
         let kind = match part {
             Part::Weight => WeightKind::Factor,
+            Part::PercentSigma => WeightKind::PercentSigma(coverage),
             Part::RelativeSigma if heads[place].unit == Some(Unit::Percent) => WeightKind::PercentSigma(coverage),
             Part::RelativeSigma => WeightKind::RelativeSigma(coverage),
             _ => WeightKind::Sigma(coverage),
@@ -202,7 +205,13 @@ pub fn divisor(head: &Head, column: usize, options: &ReadOptions) -> Result<f64,
         Some(ValueUnit::Plain) => return Ok(1.0),
         None => {}
     }
-    of_unit(head.unit, &head.text).map_err(|error| error.at_column(column as u64 + 1))
+    let is_channel = head.plain.contains(|c: char| c.is_ascii_digit());
+    let known = match head.unit {
+        // The wavelength of a channel.
+        Some(Unit::Length(_) | Unit::PerCm) if is_channel => Ok(1.0),
+        unit => of_unit(unit, &head.text),
+    };
+    known.map_err(|error| error.at_column(column as u64 + 1))
 }
 
 /// What values in this unit are divided by; `name` is what messages call their column.
@@ -212,11 +221,12 @@ pub fn divisor(head: &Head, column: usize, options: &ReadOptions) -> Result<f64,
 pub fn of_unit(unit: Option<Unit>, name: &str) -> Result<f64, Error> {
     match unit {
         Some(Unit::Percent) => Ok(100.0),
-        // Of a channel, the length is its wavelength.
-        Some(Unit::Multiple) => Err(Error::new(format!("'{}' is in a multiple of sr^-1", shown(name)))
-            .help("write the values in sr^-1, or take the numbers as they are with --value-unit plain")),
-        None | Some(Unit::PerSr | Unit::One | Unit::Length(_) | Unit::PerCm) => Ok(1.0),
-        Some(Unit::Foreign | Unit::Deg | Unit::Rad) => Err(Error::new(format!(
+        Some(Unit::Multiple) => Err(
+            Error::new(format!("'{}' is in a multiple or a fraction of sr^-1", shown(name)))
+                .help("write the values in sr^-1, or take the numbers as they are with --value-unit plain"),
+        ),
+        None | Some(Unit::PerSr | Unit::One) => Ok(1.0),
+        Some(Unit::Foreign | Unit::Deg | Unit::Rad | Unit::Length(_) | Unit::PerCm) => Err(Error::new(format!(
             "'{}' is not in sr^-1, so it is no BRDF before it is calibrated",
             shown(name)
         ))
@@ -308,6 +318,13 @@ mod tests {
                 .to_string()
                 .contains("--coverage")
         );
+        for of_another_unit in ["u (‰)", "sigma (um)", "error (deg)", "std (dB)", "sigma (nm)"] {
+            let error = find(&format!("aoi,theta_s,brdf,{of_another_unit}")).unwrap_err();
+            assert!(
+                error.column == Some(4) && error.to_string().contains("--ignore 4"),
+                "{error}"
+            );
+        }
         assert!(
             find("aoi,theta_s,BRF (%),u (%)")
                 .unwrap_err()
@@ -320,12 +337,38 @@ mod tests {
     fn units_of_values() {
         let divisor = |header| find(header).unwrap().values[0].divisor;
         assert_eq!(divisor("aoi,theta_s,BRF (%)"), 100.0);
-        assert_eq!(divisor("aoi,theta_s,brdf [1/sr]"), 1.0);
+        for header in [
+            "aoi,theta_s,brdf [1/sr]",
+            "aoi,theta_s,brdf_550nm",
+            "aoi,theta_s,R,10 um",
+        ] {
+            assert_eq!(divisor(header), 1.0, "{header}");
+        }
+        for angle in ["aoi,theta_s ('),brdf", "aoi (″),theta_s,brdf"] {
+            assert!(find(angle).unwrap_err().to_string().contains("--angles"), "{angle}");
+        }
+        // A radius is no channel.
+        assert_eq!(find("aoi,theta_s,R (mm),brdf_550nm").unwrap().values.len(), 1);
+        for (header, quantity) in [("log10(BRDF)", "log10 BRDF"), ("ln_brdf", "ln BRDF")] {
+            let columns = find(&format!("aoi,theta_s,{header}")).unwrap();
+            assert_eq!(columns.values[0].quantity.title(), quantity);
+        }
+        for header in ["aoi,theta_s,log(BRDF)", "aoi,theta_s,log_brdf", "aoi,theta_s,log f_r"] {
+            let error = find(header).unwrap_err();
+            assert!(
+                error.column == Some(3) && error.to_string().contains("--quantity ln-brdf"),
+                "{error}"
+            );
+        }
         for header in [
             "aoi,theta_s,BRDF (mV)",
             "aoi,theta_s,brdf_counts",
             "aoi,theta_s,brdf [a.u.]",
             "aoi,theta_s,BRDF (W/m2/sr)",
+            "aoi,theta_s,BRDF (‰)",
+            "aoi,theta_s,BRDF (um)",
+            "aoi,theta_s,f (mm)",
+            "aoi,theta_s,BRDF [1/um]",
         ] {
             let error = find(header).unwrap_err();
             assert!(

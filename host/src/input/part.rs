@@ -18,13 +18,15 @@ pub enum Part {
     Sigma,
     /// Standard deviation over the value, or percent of it if its head says so.
     RelativeSigma,
+    /// Standard deviation in percent of the value.
+    PercentSigma,
     /// Factor of the residual.
     Weight,
 }
 
 /// The names that `--columns` takes.
 const NAMES: &str = "theta_i, theta_s, phi_i, phi_s, delta_phi, wavelength, polarisation, sample, brdf, ln_brdf, log10_brdf, brdf_cos, brf, \
-     brf_cos, sigma, rel_sigma, weight";
+     brf_cos, sigma, rel_sigma, percent_sigma, weight";
 
 /// Reads `theta_s=2` or `theta_s=name`.
 ///
@@ -46,6 +48,7 @@ pub fn parse(text: &str) -> Result<(Part, String), String> {
         "sample" => Part::Role(Role::Sample),
         "sigma" => Part::Sigma,
         "relsigma" => Part::RelativeSigma,
+        "percentsigma" => Part::PercentSigma,
         "weight" => Part::Weight,
         other => match role::quantity(other) {
             Some(quantity) => Part::Role(Role::Value(quantity)),

@@ -162,7 +162,14 @@ fn kind(head: &Head, named: &Named, value: &Head, column: usize, options: &ReadO
         return Ok(WeightKind::Factor);
     }
     let name = shown(&head.text);
-    if matches!(head.unit, Some(Unit::Multiple | Unit::Foreign)) && options.value_unit.is_none() {
+    // The length of `sigma_550nm` is a wavelength.
+    let is_channel = named.of.contains(|c: char| c.is_ascii_digit());
+    let is_other = match head.unit {
+        None | Some(Unit::PerSr | Unit::One | Unit::Percent) => false,
+        Some(Unit::Length(_) | Unit::PerCm) => !is_channel,
+        Some(Unit::Multiple | Unit::Foreign | Unit::Deg | Unit::Rad) => true,
+    };
+    if is_other && options.value_unit.is_none() {
         return Err(
             Error::new(format!("'{name}' is in another unit than sr^-1")).help(format!(
                 "give it in sr^-1, or leave it out with --ignore {}",

@@ -9,7 +9,7 @@ pub enum Unit {
     Rad,
     /// sr^-1.
     PerSr,
-    /// A power of ten of sr^-1, as `10^-3 sr^-1`.
+    /// A power of ten of sr^-1, as `10^-3 sr^-1` or per mille.
     Multiple,
     /// None, as of a ratio.
     One,
@@ -24,7 +24,7 @@ pub enum Unit {
 }
 
 /// Units by their spelling, in lower case and without spaces, `^` and `*`.
-const SPELLINGS: [(&str, Unit); 99] = [
+const SPELLINGS: [(&str, Unit); 131] = [
     ("deg", Unit::Deg),
     ("degs", Unit::Deg),
     ("degree", Unit::Deg),
@@ -40,6 +40,18 @@ const SPELLINGS: [(&str, Unit); 99] = [
     ("mrad", Unit::Foreign),
     ("arcmin", Unit::Foreign),
     ("arcsec", Unit::Foreign),
+    ("arcminute", Unit::Foreign),
+    ("arcminutes", Unit::Foreign),
+    ("arcsecond", Unit::Foreign),
+    ("arcseconds", Unit::Foreign),
+    ("'", Unit::Foreign),
+    ("′", Unit::Foreign),
+    ("’", Unit::Foreign),
+    ("\"", Unit::Foreign),
+    ("″", Unit::Foreign),
+    ("”", Unit::Foreign),
+    ("µrad", Unit::Foreign),
+    ("urad", Unit::Foreign),
     ("1/sr", Unit::PerSr),
     ("/sr", Unit::PerSr),
     ("sr-1", Unit::PerSr),
@@ -66,6 +78,14 @@ const SPELLINGS: [(&str, Unit); 99] = [
     ("percent", Unit::Percent),
     ("percentage", Unit::Percent),
     ("pct", Unit::Percent),
+    ("‰", Unit::Multiple),
+    ("permille", Unit::Multiple),
+    ("per_mille", Unit::Multiple),
+    ("permil", Unit::Multiple),
+    ("promille", Unit::Multiple),
+    ("‱", Unit::Multiple),
+    ("ppm", Unit::Multiple),
+    ("ppb", Unit::Multiple),
     ("nm", Unit::Length(1.0)),
     ("nanometer", Unit::Length(1.0)),
     ("nanometers", Unit::Length(1.0)),
@@ -101,6 +121,18 @@ const SPELLINGS: [(&str, Unit); 99] = [
     ("1/cm", Unit::PerCm),
     ("per_cm", Unit::PerCm),
     ("percm", Unit::PerCm),
+    ("1/nm", Unit::Foreign),
+    ("nm-1", Unit::Foreign),
+    ("1/um", Unit::Foreign),
+    ("um-1", Unit::Foreign),
+    ("1/µm", Unit::Foreign),
+    ("µm-1", Unit::Foreign),
+    ("1/μm", Unit::Foreign),
+    ("μm-1", Unit::Foreign),
+    ("1/mm", Unit::Foreign),
+    ("mm-1", Unit::Foreign),
+    ("1/m", Unit::Foreign),
+    ("m-1", Unit::Foreign),
     ("v", Unit::Foreign),
     ("mv", Unit::Foreign),
     ("µv", Unit::Foreign),
@@ -163,7 +195,7 @@ impl Unit {
             let before = before.trim_end_matches([' ', '_', ',', '/', ':']);
             let index = after.trim().chars().filter(|c| c.is_alphabetic()).count() <= 1 && mark != '/';
             if !before.contains(char::is_alphanumeric)
-                || (index && !after.contains(['°', 'º', '%', 'Å', 'å']))
+                || (index && !after.contains(['°', 'º', '%', '‰', 'Å', 'å']))
                 || ambiguous(after, mark)
             {
                 continue;
@@ -175,7 +207,7 @@ impl Unit {
                 return (shorter.unwrap_or(before).trim_end(), Some(unit));
             }
         }
-        const GLUED: [&str; 8] = ["degrees", "degree", "deg", "°", "radians", "radian", "%", "nm"];
+        const GLUED: [&str; 9] = ["degrees", "degree", "deg", "°", "radians", "radian", "%", "‰", "nm"];
         for unit in GLUED {
             let cut = name
                 .len()
@@ -252,7 +284,10 @@ mod tests {
             (Unit::parse("1e-3"), Unit::parse("x10"), Unit::parse("100")),
             (None, None, None)
         );
-        assert_eq!(Unit::parse("W/m^2/sr"), Some(Unit::Foreign));
+        assert_eq!(Unit::at_end("BRDF ‰"), ("BRDF", Some(Unit::Multiple)));
+        for foreign in ["W/m^2/sr", "(1/um)", "[µm^-1]", "(')", "(″)", "arcseconds"] {
+            assert_eq!(Unit::parse(foreign), Some(Unit::Foreign), "{foreign}");
+        }
         assert_eq!(Unit::parse("sample"), None);
     }
 }

@@ -5,11 +5,13 @@
 //! Degrees and file formats exist here and in `simulate` only.
 
 pub mod about;
+mod azimuths;
 pub mod bytes;
 mod channel;
 pub mod check;
 pub mod columns;
 mod cut;
+mod deviations;
 mod direction;
 pub mod doubt;
 mod facts;

@@ -4,6 +4,7 @@ use super::columns::Polar;
 use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
+use super::{azimuths, deviations};
 use crate::error::Error;
 use crate::number::shortest;
 
@@ -34,7 +35,8 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
     if options.value_unit.is_none() {
         size_of_values(scan, unit, options)?;
     }
-    Ok(())
+    azimuths::doubt(scan, unit, options)?;
+    deviations::doubt(scan, options)
 }
 
 /// The largest of some finite numbers without their signs; 0 without any.
@@ -149,7 +151,8 @@ fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error
         return Ok(());
     }
     let error = Error::new(format!(
-        "theta_s begins at {low} degrees and {beyond} of {} rows are beyond 90: is it counted from the surface?",
+        "theta_s begins at {} degrees and {beyond} of {} rows are beyond 90: is it counted from the surface?",
+        shortest(low),
         scan.rows.len()
     ))
     .help("theta_s is counted from the normal, negative on the side of incidence: subtract 90 degrees if so");
@@ -200,7 +203,8 @@ fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result
         _ => "pi times the BRDF",
     };
     let error = Error::new(format!(
-        "{what} is {least:.3} or more in all directions, brighter than any surface; are the values in percent, or not calibrated?"
+        "{what} is {} or more in all directions, brighter than any surface; are the values in percent, or not calibrated?",
+        if least < 1e6 { format!("{least:.3}") } else { shortest(least) }
     ))
     .help("say --value-unit percent if so, give the --quantity, or take them as they are with --value-unit plain");
     let first = scan.rows.first().map_or(0, |row| row.line);

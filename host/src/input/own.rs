@@ -123,7 +123,7 @@ mod tests {
     fn reads_back_to_the_same_bits() {
         let odd = (1..60).map(|k| {
             let k = f64::from(k);
-            format!("{},{},{},{}\n", 0.37 * k, 1.4 * k - 40.0 / 3.0, 0.1 / k, 0.01 * k)
+            format!("{},{},{},{}\n", 0.37 * k, 1.4 * k - 40.0 / 3.0, 0.1 / k, 5e-5 * k)
         });
         let odd: String = odd.collect();
         let drop = ReadOptions {

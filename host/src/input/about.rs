@@ -35,6 +35,8 @@ pub struct About {
     pub divisor: f64,
     /// The standard deviation of ln f that a weight of 1 stands for, if the file gives it beside weights.
     pub sigma_ln: Option<f64>,
+    /// The first cell that is no number, where the file has such.
+    pub missing: Option<Missing>,
     /// What was done to the numbers, such as angles of a full turn that became negative.
     pub notes: Vec<String>,
     /// What may be wrong with the file; this is among the notes too.
@@ -65,12 +67,24 @@ impl Default for About {
             angles_named: true,
             divisor: 1.0,
             sigma_ln: None,
+            missing: None,
             notes: Vec::new(),
             doubts: Vec::new(),
             sources: Arc::default(),
             asked: Arc::default(),
         }
     }
+}
+
+/// A cell that is no number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missing {
+    /// Its line.
+    pub line: u64,
+    /// Its column, from 1.
+    pub column: u64,
+    /// What stands there.
+    pub text: String,
 }
 
 /// A column that is used.

@@ -3,6 +3,7 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
+use super::about::Missing;
 use super::format::Format;
 use super::kind::Kind;
 use super::left_out::Reason;
@@ -13,7 +14,7 @@ use super::read_as::ReadAs;
 use super::side;
 use super::units::{Angles, Forward, Quantity};
 use super::weight::{self, Deviation, OnDeviations};
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::number::shortest;
 
 /// The measurement in a scan of `file`.
@@ -54,6 +55,12 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
                 masked.extend(sample.map(|sample| (reason, sample)));
             }
             Seen::Invalid { what, column } => {
+                let here = |cell: &&Missing| cell.line == row.line && Some(cell.column) == column;
+                let what = match scan.about.missing.as_ref().filter(here) {
+                    Some(cell) if cell.text.is_empty() => what.replacen(" is NaN", " is an empty cell", 1),
+                    Some(cell) => what.replacen(" is NaN", &format!(" is '{}'", shown(&cell.text)), 1),
+                    None => what,
+                };
                 counts.add(Reason::NotValid, degrees(row, &read_as));
                 faults.add(row.line, column, what);
                 faults.near_retro += usize::from(is_near_retro(row, &read_as));
@@ -311,10 +318,11 @@ fn weight(row: &Row, quantity: Quantity, options: &ReadOptions, brdf: f64) -> Re
         };
         Ok((1.0 / whole, (weight::Source::Sigma, deviation)))
     } else {
-        let what = format!(
-            "the relative standard deviation is {}, which gives no weight",
-            shortest(sigma)
-        );
+        let (name, number) = match known {
+            Weight::Sigma(sigma) => ("the standard deviation", sigma),
+            _ => ("the relative standard deviation", sigma),
+        };
+        let what = format!("{name} is {}, which gives no weight", shortest(number));
         Err(what + " (--sigma-floor 0.01 or --weights equal would)")
     }
 }
@@ -373,6 +381,21 @@ mod tests {
 
     fn read(text: &str, options: &ReadOptions) -> Result<Measurement, Error> {
         parse("scan.csv", text.as_bytes(), options).map(|mut scans| scans.remove(0))
+    }
+
+    #[test]
+    fn quotes_the_cell_that_is_no_number() {
+        for (cells, words) in [
+            ("n/a,0.1", "the BRDF is 'n/a', which"),
+            (",0.1", "the BRDF is an empty cell, which"),
+            ("#DIV/0!,0.1", "the BRDF is '#DIV/0!', which"),
+            ("0.5,", "the standard deviation is an empty cell, which"),
+            ("0.5,-0.1", "the standard deviation is -0.1, which"),
+        ] {
+            let text = format!("theta_i,theta_s,brdf,sigma\n45,0,1,0.1\n45,1,{cells}\n");
+            let error = read(&text, &ReadOptions::default()).unwrap_err();
+            assert!(error.line == Some(3) && error.what.contains(words), "{error}");
+        }
     }
 
     #[test]

@@ -146,8 +146,16 @@ impl Finder<'_> {
                 shown(&head.text)
             )
         });
+        // The one free column whose name goes on.
+        let word = quantity.split('_').next().unwrap_or(quantity);
+        let mut alike =
+            (0..self.heads.len()).filter(|&place| !self.taken[place] && self.heads[place].plain.contains(word));
+        let number = match (alike.next(), alike.next()) {
+            (Some(only), None) => (only + 1).to_string(),
+            _ => "N".to_string(),
+        };
         Error::new(format!("no column {quantity} among the columns {}{foreign}{through}", some_of(&found))).help(format!(
-            "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}=2 says where it is"
+            "the first line must name the columns theta_i_deg,theta_s_deg,brdf_per_sr, or --columns {name}={number} says where it is"
         ))
     }
 }

@@ -200,6 +200,11 @@ impl<'a> Sheet<'a> {
         })
     }
 
+    /// The names in a remark, if it has one for each column.
+    pub fn names_in<'b>(&self, remark: &'b str) -> Option<Vec<&'b str>> {
+        names_in(remark, self.heads.len(), self.delimiter)
+    }
+
     /// Calls `take` with the line and the cells of each row.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 mod about;
 mod means;
+mod numbered;
 mod remarks;
 mod sorter;
 mod texts;
@@ -15,7 +16,7 @@ use super::raw::RawScan;
 use super::role::Role;
 use super::sheet::Sheet;
 use super::unit::Unit;
-use super::units::Polarisation;
+use super::units::{Angles, Polarisation};
 use super::{find, repeats, rows, wide};
 use crate::error::Error;
 use crate::number::shortest;
@@ -49,6 +50,18 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         .at_line(sheet.line)
         .help("remove the remark; if the columns are of wavelengths, say so with --wavelength-unit um"));
     }
+    let angles = options.angles.unwrap_or(columns.angles);
+    let may_be_radians = |degrees: &f64| angles == Angles::Rad && *degrees > 0.0 && *degrees < 1.6;
+    if let (Some(number), Some(line)) = (theta_i.filter(may_be_radians), remarks.theta_i_without_unit) {
+        return Err(Error::new(format!(
+            "a remark says that theta_i is {} without a unit, and the angles are in radians",
+            shortest(number)
+        ))
+        .at_line(line)
+        .help("name the unit there, as in '45 deg', or give theta_i in degrees with --theta-i"));
+    }
+    remarks::refuse_renamed(&sheet)?;
+    numbered::refuse(&sheet)?;
     let mut sorter = Sorter::new(&columns, &sheet.facts, theta_i, options);
     sheet.for_each(|line, cells| sorter.row(line, cells))?;
     let (unused, unit) = (std::mem::take(&mut sorter.unused), sorter.unit.take());
@@ -178,6 +191,81 @@ mod tests {
         assert_eq!(scan.samples[0].delta_phi, PI);
         let scan = one("theta_i_rad,theta_s_rad,brdf\n0.5,0.25,1\n");
         assert_eq!(scan.samples, [Sample::in_plane(0.5, 0.25, 1.0)]);
+    }
+
+    #[test]
+    fn refuses_what_rows_and_remarks_leave_open() {
+        let rows = "20,-40,0.11\n20,0,0.12\n20,40,0.13\n";
+        for (text, line, column, words) in [
+            // An angle without a unit beside radians, and the number of one in a list.
+            (
+                "# theta_i: 0.7854\nangle [rad],brdf\n-0.8,0.1\n0.4,0.2\n".to_string(),
+                Some(1),
+                None,
+                "--theta-i",
+            ),
+            (
+                "# AOI # 3\nangle,brdf\n-40,0.1\n40,0.2\n".to_string(),
+                None,
+                None,
+                "--theta-i",
+            ),
+            (
+                format!("theta_i,theta_s,brdf\n1,2,3\n{rows}"),
+                Some(2),
+                None,
+                "counts the columns",
+            ),
+            (
+                format!("theta_i,theta_s,brdf\n\n0,1,2\n{rows}"),
+                Some(3),
+                None,
+                "counts the columns",
+            ),
+            (
+                format!("theta_i,theta_s,brdf\n{rows}# theta_s,theta_i,brdf\n0,40,0.1\n"),
+                Some(5),
+                None,
+                "# theta_s,theta_i,brdf",
+            ),
+            (
+                "theta_i,theta_s,brdf,type\n20,0,0.1,BRDF\n20,10,0.1,BTDF\n".to_string(),
+                Some(1),
+                Some(4),
+                "--ignore 4",
+            ),
+        ] {
+            let error = read(&text, &ReadOptions::default()).unwrap_err();
+            assert_eq!((error.line, error.column), (line, column), "{error}");
+            assert!(error.to_string().contains(words), "{error}");
+        }
+        for text in [
+            "# theta_i: 45 deg\nangle [rad],brdf\n-0.8,0.1\n0.4,0.2\n".to_string(),
+            format!("theta_i,theta_s,brdf\n{rows}# Theta_i [deg],theta_r,BRDF\n20,50,0.1\n"),
+            "theta_i,theta_s,brdf\n1,2,3\n4,5,6\n7,8,9\n".to_string(),
+            "theta_i,theta_s,brdf,type\n20,0,0.1,BRDF\n20,10,0.1,BRDF\n".to_string(),
+        ] {
+            one(&text);
+        }
+        let ignore = ReadOptions {
+            ignore: vec!["type".to_string()],
+            ..ReadOptions::default()
+        };
+        assert!(read("theta_i,theta_s,brdf,type\n20,0,0.1,BTDF\n", &ignore).is_ok());
+    }
+
+    #[test]
+    fn says_which_column_is_meant() {
+        for (text, words) in [
+            ("theta_i,theta_s,BRDF normalised\n20,0,0.1\n", "--columns brdf=3 says"),
+            (
+                "theta_i,theta_s,BRDF_raw,BRDF_cleaned\n20,0,0.1,0.1\n",
+                "--columns brdf=N says",
+            ),
+        ] {
+            let error = read(text, &ReadOptions::default()).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
     }
 
     #[test]

@@ -1,11 +1,14 @@
 //! Remarks that say what columns say too, or what no column can take.
 
 use super::sorter::Scan;
-use crate::error::shown;
+use crate::error::{Error, shown};
 use crate::input::columns::Columns;
 use crate::input::facts::Facts;
+use crate::input::head::Head;
 use crate::input::options::ReadOptions;
-use crate::input::{polarisation, wavelength};
+use crate::input::role::{self, Role};
+use crate::input::sheet::Sheet;
+use crate::input::{polarisation, rows, wavelength};
 use crate::number::shortest;
 
 /// Angles that people write with one digit are one within this, degrees.
@@ -58,6 +61,36 @@ pub fn not_taken(facts: &Facts, columns: &Columns, scans: &[Scan], options: &Rea
         ));
     }
     lines
+}
+
+/// Refuses a remark between the rows that names other columns than the header, or in another order.
+///
+/// # Errors
+/// There is one, at its line.
+pub fn refuse_renamed(sheet: &Sheet) -> Result<(), Error> {
+    // Most files have none between their rows, and many rows.
+    if memchr::memchr(b'#', sheet.rows.as_bytes()).is_none() || sheet.heads.iter().all(|head| head.text.is_empty()) {
+        return Ok(());
+    }
+    let other = |(own, name): (&Head, &&str)| {
+        let head = Head::new(name);
+        let (role, known) = (role::role(&head), role::role(own));
+        let unit = head.unit.is_some() && own.unit.is_some() && head.unit != own.unit;
+        unit || role != known || matches!(role, Role::Unknown(_)) && head.plain != own.plain
+    };
+    let remarks = rows::lines(sheet.rows).filter(|(_, _, line)| line.trim_start().starts_with('#'));
+    for (number, _, line) in remarks {
+        let names = sheet.names_in(line);
+        if names.is_some_and(|names| sheet.heads.iter().zip(&names).any(other)) {
+            return Err(Error::new(format!(
+                "a remark between the rows names other columns than the header: '{}'",
+                shown(line.trim())
+            ))
+            .at_line(sheet.first_line + number - 1)
+            .help("give each table a file of its own, or all rows the order of the header"));
+        }
+    }
+    Ok(())
 }
 
 /// Different finite numbers in order.

@@ -6,7 +6,7 @@ use super::about;
 use super::texts::Texts;
 use super::unused::Seen;
 use crate::error::{Error, shown};
-use crate::input::about::About;
+use crate::input::about::{About, Missing};
 use crate::input::columns::{Azimuth, Columns, Polar, Value, WeightKind};
 use crate::input::facts::Facts;
 use crate::input::head::Head;
@@ -17,7 +17,7 @@ use crate::input::rows::{self, Decimal};
 use crate::input::unit::Unit;
 use crate::input::units::{Angles, WavelengthUnit};
 use crate::input::weight::Deviation;
-use crate::input::{channel, polarisation, wavelength};
+use crate::input::{channel, part, polarisation, wavelength};
 
 /// A scan with what tells it from others.
 pub struct Scan {
@@ -63,7 +63,15 @@ pub struct Sorter<'a> {
 impl<'a> Sorter<'a> {
     /// Has no row yet; `theta_i` is what a remark says, degrees.
     pub fn new(columns: &'a Columns, facts: &'a Facts, theta_i: Option<f64>, options: &'a ReadOptions) -> Self {
-        let seen = |&(column, role): &(usize, Role)| Seen::new(column, &columns.heads[column].text, role);
+        let is_left_out = |column: usize| {
+            let mut places = options
+                .ignore
+                .iter()
+                .map(|name| part::place(name, &columns.heads, "--ignore"));
+            places.any(|place| place.is_ok_and(|place| place == column))
+        };
+        let seen =
+            |&(column, role): &(usize, Role)| Seen::new(column, &columns.heads[column].text, role, is_left_out(column));
         let width = columns.values.iter().map(|value| value.scan + 1).max().unwrap_or(0);
         let mut together = vec![Vec::new(); width];
         for (place, value) in columns.values.iter().enumerate() {
@@ -137,6 +145,15 @@ impl<'a> Sorter<'a> {
                 line,
             };
             let scan = group * self.width + value.scan;
+            if row.value.is_nan() || matches!(row.weight, Weight::Sigma(x) | Weight::RelativeSigma(x) if x.is_nan()) {
+                let weight = value.weight.filter(|_| !row.value.is_nan()).map(|(column, _)| column);
+                let column = weight.unwrap_or(value.column);
+                self.scans[scan].raw.about.missing.get_or_insert_with(|| Missing {
+                    line,
+                    column: column as u64 + 1,
+                    text: cells[column].to_string(),
+                });
+            }
             if sigma_ln.is_some() {
                 self.scans[scan].raw.about.sigma_ln = sigma_ln;
             }

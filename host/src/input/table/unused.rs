@@ -12,27 +12,36 @@ pub struct Seen {
     /// What it looks like.
     pub role: Role,
     ignored: bool,
+    /// True of one that the user leaves out.
+    left_out: bool,
     first: Option<String>,
     varies: bool,
     is_zero: bool,
+    /// A cell that says that its row is of light that goes through.
+    through: Option<String>,
 }
 
 impl Seen {
-    /// The column at this place, of which nothing was seen.
-    pub fn new(column: usize, name: &str, role: Role) -> Seen {
+    /// The column at this place, of which nothing was seen; `left_out` if the user says so.
+    pub fn new(column: usize, name: &str, role: Role, left_out: bool) -> Seen {
         Seen {
             column,
             name: name.to_string(),
+            left_out,
             ignored: role == Role::Unknown(Look::Other),
             role,
             first: None,
             varies: false,
             is_zero: true,
+            through: None,
         }
     }
 
     /// One more cell.
     pub fn see(&mut self, cell: &str) {
+        if !self.left_out && self.through.is_none() && is_through(cell) {
+            self.through = Some(cell.to_string());
+        }
         if self.ignored || (self.varies && !self.is_zero) {
             return;
         }
@@ -48,6 +57,18 @@ impl Seen {
     /// # Errors
     /// It looks like an angle, and differs from row to row or from 0; or the like.
     pub fn refuse(&self) -> Result<(), Error> {
+        if let Some(cell) = &self.through {
+            let number = self.column + 1;
+            return Err(Error::new(format!(
+                "the column '{}' has rows that say '{}': they are of light that goes through, and no reflectance",
+                shown(&self.name),
+                shown(cell)
+            ))
+            .at_column(number as u64)
+            .help(format!(
+                "leave these rows out of the file, make scans of what stands there with --split {number}, or leave the column out with --ignore {number}"
+            )));
+        }
         let (matters, like) = match self.role {
             Role::ThetaI | Role::ThetaS | Role::Theta | Role::Unknown(Look::Angle) => (!self.is_zero, "an angle"),
             Role::PhiS | Role::DeltaPhi | Role::Phi => (!self.is_zero, "an azimuth"),
@@ -74,4 +95,11 @@ impl Seen {
                 "say what it is with --columns NAME={number}, make scans of what stands in it with --split {number}, or leave it out with --ignore {number}"
             )))
     }
+}
+
+/// True of words for light that goes through a sample.
+fn is_through(cell: &str) -> bool {
+    const WORDS: [&str; 5] = ["btdf", "transmission", "transmitted", "transmittance", "transmissive"];
+    // Numbers are most cells, and cost a look at one letter.
+    cell.starts_with(['B', 'b', 'T', 't']) && WORDS.iter().any(|word| cell.eq_ignore_ascii_case(word))
 }

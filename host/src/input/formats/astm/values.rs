@@ -38,6 +38,7 @@ pub fn of(
             divisor: {
                 if said.is_none() && options.quantity.is_none() {
                     channel::refuse_percent(head).map_err(at)?;
+                    channel::refuse_log(head).map_err(at)?;
                 }
                 find::divisor(head, column, options)?
             },

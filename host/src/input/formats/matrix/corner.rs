@@ -188,6 +188,7 @@ fn values(head: &Head, options: &ReadOptions) -> Result<Corner, Error> {
     let head = head.clone().with_unit(&head.text);
     if options.quantity.is_none() {
         channel::refuse_percent(&head)?;
+        channel::refuse_log(&head)?;
     }
     Ok(Corner {
         names: Names::Neither,

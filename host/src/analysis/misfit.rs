@@ -15,8 +15,7 @@ pub mod rows;
 pub mod sandwich;
 pub mod smoothed;
 
-use std::collections::VecDeque;
-use std::sync::{Mutex, PoisonError};
+use std::cell::Cell;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
@@ -56,18 +55,17 @@ fn with_evidence(samples: &[Sample<f64>], outcome: &Outcome, evidence: f64) -> U
 
 /// So many standard errors are the half of a 95 % interval: Student's t of the effective degrees of freedom; infinite without any.
 pub fn coverage_factor(known: &Uncertainty) -> f64 {
-    /// The last degrees of freedom that were asked for, and their factors: the same are asked for several times a fit, and of a million samples each takes tenths of a second.
-    static LAST: Mutex<VecDeque<(f64, f64)>> = Mutex::new(VecDeque::new());
-    const KEPT: usize = 16;
-    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    thread_local! {
+        /// The last degrees of freedom that were asked for, and their factor: the same are asked for several times a fit, and of a million samples each takes tenths of a second.
+        static LAST: Cell<(f64, f64)> = const { Cell::new((f64::NAN, f64::NAN)) };
+    }
     let degrees = known.effective;
-    if let Some(&(_, factor)) = last().iter().find(|one| one.0 == degrees) {
+    let (last, factor) = LAST.get();
+    if last == degrees {
         return factor;
     }
     let factor = Real::sqrt(threshold(0.95, degrees));
-    let mut last = last();
-    last.truncate(KEPT - 1);
-    last.push_front((degrees, factor));
+    LAST.set((degrees, factor));
     factor
 }
 

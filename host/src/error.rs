@@ -100,6 +100,15 @@ impl Error {
         self
     }
 
+    /// The same error, at the place of a row, as far as it is known: the line is 0 in a file without lines.
+    pub(crate) fn at(self, line: u64, column: Option<u64>) -> Self {
+        Error {
+            line: if line > 0 { Some(line) } else { self.line },
+            column: column.or(self.column),
+            ..self
+        }
+    }
+
     /// The same error, with what to do about it.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());

@@ -48,13 +48,8 @@ pub fn doubt(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result<(), 
     match found {
         None => Ok(()),
         Some((what, help)) => {
-            let error = Error::new(what).help(help);
             let line = scan.rows.first().map_or(0, |row| row.line);
-            let error = Error {
-                column: Some(column),
-                ..error
-            };
-            Err(if line > 0 { error.at_line(line) } else { error })
+            Err(Error::new(what).help(help).at(line, Some(column)))
         }
     }
 }

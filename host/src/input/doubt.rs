@@ -4,7 +4,7 @@ use super::columns::Polar;
 use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
-use super::{azimuths, deviations};
+use super::{azimuths, large_sigma};
 use crate::error::Error;
 use crate::number::shortest;
 
@@ -36,7 +36,7 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
         size_of_values(scan, unit, options)?;
     }
     azimuths::doubt(scan, unit, options)?;
-    deviations::doubt(scan, options)
+    large_sigma::doubt(scan, options)
 }
 
 /// The largest of some finite numbers without their signs; 0 without any.
@@ -53,13 +53,7 @@ fn unit_of_angles(scan: &RawScan, unit: Angles) -> Result<(), Error> {
         (false, None) => largest(scan.rows.iter().flat_map(|row| [row.theta_i, row.theta_s])),
     };
     let Some(first) = scan.rows.first() else { return Ok(()) };
-    let at = |error: Error| {
-        if first.line > 0 {
-            error.at_line(first.line)
-        } else {
-            error
-        }
-    };
+    let at = |error: Error| error.at(first.line, None);
     match unit {
         Angles::Rad if polar > RIGHT_ANGLE && polar <= 180.0 => Err(at(Error::new(format!(
             "an angle is {polar} radians, beyond the horizon; are they degrees?"
@@ -138,11 +132,7 @@ fn full_turn(scan: &mut RawScan, unit: Angles) -> Result<(), Error> {
     ))
     .help("if these are azimuths, name the columns with --columns phi_s=...,theta_s=...; if they are of light that goes through the sample too, leave its rows out of the file");
     let line = angles().find(beyond).map_or(0, |row| row.line);
-    let error = Error {
-        column: scan.places.theta_s,
-        ..error
-    };
-    Err(if line > 0 { error.at_line(line) } else { error })
+    Err(error.at(line, scan.places.theta_s))
 }
 
 /// Refuses scattering angles that begin at 0 and of which many are beyond the normal: they are counted from the surface.
@@ -156,10 +146,7 @@ fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error
         scan.rows.len()
     ))
     .help("theta_s is counted from the normal, negative on the side of incidence: subtract 90 degrees if so");
-    Err(Error {
-        column: scan.places.theta_s,
-        ..error
-    })
+    Err(error.at(0, scan.places.theta_s))
 }
 
 /// Refuses values which, over a wide range of angles, are all brighter than any surface, and marks of no value among others.
@@ -188,11 +175,7 @@ fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result
             "leave such values out with --max-value {}, or take them as they are with --value-unit plain",
             shortest(row.value)
         ));
-        let error = Error {
-            column: scan.places.value,
-            ..error
-        };
-        return Err(if row.line > 0 { error.at_line(row.line) } else { error });
+        return Err(error.at(row.line, scan.places.value));
     }
     // What is known to be in percent is right.
     if valid < FEW || scan.about.divisor != 1.0 || !(high - low >= WIDE && least >= BRIGHTEST) {
@@ -208,5 +191,5 @@ fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result
     ))
     .help("say --value-unit percent if so, give the --quantity, or take them as they are with --value-unit plain");
     let first = scan.rows.first().map_or(0, |row| row.line);
-    Err(if first > 0 { error.at_line(first) } else { error })
+    Err(error.at(first, None))
 }

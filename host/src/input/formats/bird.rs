@@ -1,20 +1,22 @@
 //! EURAMET BiRD universal BRDF JSON: named arrays with units, one value each for each sample, and uncertainties.
 
+mod file;
+mod refuse;
+mod uncertainty;
+
 use std::collections::HashMap;
 
-use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use crate::error::{Error, shown};
 use crate::input::bytes::Lines;
-use crate::input::finder;
 use crate::input::format::{Format, Reader};
-use crate::input::head::Head;
 use crate::input::options::ReadOptions;
-use crate::input::raw::{RawScan, Row, Weight};
+use crate::input::raw::{RawScan, Row};
 use crate::input::unit::Unit;
 use crate::input::units::Angles;
-use crate::input::wavelength;
+use file::{Data, File, Variable, in_degrees, number};
+use uncertainty::uncertainty;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -27,46 +29,6 @@ pub const FORMAT: Format = Format {
 /// True of a JSON object with data of this name.
 fn is(text: &str) -> bool {
     text.trim_start().starts_with('{') && text.contains("\"data\"") && text.contains("\"BRDF\"")
-}
-
-#[derive(Deserialize)]
-struct File<'a> {
-    #[serde(borrow)]
-    metadata: Option<&'a RawValue>,
-    data: Data<'a>,
-}
-
-#[derive(Deserialize)]
-struct Data<'a> {
-    #[serde(borrow)]
-    theta_i: Variable<'a>,
-    phi_i: Variable<'a>,
-    theta_r: Variable<'a>,
-    phi_r: Variable<'a>,
-    #[serde(rename = "BRDF")]
-    brdf: Variable<'a>,
-    #[serde(rename = "uBRDF")]
-    u_brdf: Option<Variable<'a>>,
-    wavelength_i: Option<Variable<'a>>,
-    wavelength_r: Option<Variable<'a>>,
-    polarization_i: Option<Variable<'a>>,
-    polarization_r: Option<Variable<'a>>,
-}
-
-/// A named array; polarisations have a notation in place of a unit.
-#[derive(Deserialize)]
-struct Variable<'a> {
-    #[serde(default)]
-    unit: String,
-    #[serde(borrow)]
-    values: Vec<&'a RawValue>,
-    uncertainty: Option<&'a RawValue>,
-}
-
-#[derive(Deserialize)]
-struct Uncertainty {
-    value: f64,
-    unit: String,
 }
 
 /// One scan for each wavelength and polarisation; uncertainties of the BRDF are standard deviations.
@@ -84,7 +46,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     })?;
     let data = &file.data;
     let lines = Lines::new(text);
-    refuse_transmission(file.metadata, text, &lines)?;
+    refuse::transmission(file.metadata, text, &lines)?;
     let variables = [
         ("theta_i", Some(&data.theta_i)),
         ("phi_i", Some(&data.phi_i)),
@@ -109,7 +71,7 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new(format!("the unit of BRDF is '{}'", shown(&data.brdf.unit)))
             .help("give values in sr^-1, and say so"));
     }
-    refuse_fluorescence(data, text, &lines)?;
+    refuse::fluorescence(data, text, &lines)?;
     let weight = uncertainty(data, text, &lines)?;
     let mut scans: Vec<RawScan> = Vec::new();
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
@@ -140,59 +102,6 @@ fn read(text: &str, _: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     Ok(scans)
 }
 
-/// Refuses a file whose metadata say that it holds transmission.
-fn refuse_transmission(metadata: Option<&RawValue>, text: &str, lines: &Lines) -> Result<(), Error> {
-    #[derive(Deserialize)]
-    struct Metadata<'a> {
-        #[serde(borrow, rename = "type")]
-        kind: &'a RawValue,
-    }
-    // Metadata of another form, or without a type, say nothing of it.
-    let known = metadata.and_then(|raw| serde_json::from_str::<Metadata>(raw.get()).ok());
-    let Some(kind) = known.map(|metadata| metadata.kind) else {
-        return Ok(());
-    };
-    let name = kind.get().trim_matches('"');
-    if !finder::goes_through(&Head::new(name)) {
-        return Ok(());
-    }
-    let (line, column) = lines.place(text, kind.get());
-    let what = format!("metadata say that this is '{}', light that goes through", shown(name));
-    Err(Error::new(what)
-        .at_line(line)
-        .at_column(column)
-        .help("measure the BRDF"))
-}
-
-/// Refuses light that is scattered at another wavelength than it came with.
-fn refuse_fluorescence(data: &Data, text: &str, lines: &Lines) -> Result<(), Error> {
-    let (Some(incident), Some(scattered)) = (&data.wavelength_i, &data.wavelength_r) else {
-        return Ok(());
-    };
-    let of = |variable: &Variable, k: usize| {
-        let number = variable.values[k].get().parse().ok()?;
-        wavelength::nanometres(number, Unit::parse(&variable.unit)).ok()
-    };
-    let differs = |&k: &usize| match (of(incident, k), of(scattered, k)) {
-        (Some(from), Some(to)) => (from - to).abs() > 1e-6 * from,
-        _ => false,
-    };
-    let Some(k) = (0..incident.values.len()).find(differs) else {
-        return Ok(());
-    };
-    let (line, column) = lines.place(text, scattered.values[k].get());
-    let [from, to] = [incident, scattered].map(|variable| format!("{} {}", variable.values[k].get(), variable.unit));
-    let what = format!(
-        "wavelength_r is {} where wavelength_i is {}: this is fluorescence, and no BRDF",
-        shown(&to),
-        shown(&from)
-    );
-    Err(Error::new(what)
-        .at_line(line)
-        .at_column(column)
-        .help("leave such samples out of the file"))
-}
-
 /// The wavelength and the polarisations of sample `k`.
 fn names(data: &Data, k: usize) -> Vec<String> {
     let word = |raw: &RawValue| raw.get().replace(['"', '[', ']'], "").replace(',', " ");
@@ -208,75 +117,10 @@ fn names(data: &Data, k: usize) -> Vec<String> {
     wavelength.chain(polarisations).map(tidy).collect()
 }
 
-/// The uncertainty of sample `k`: its own, or that of all.
-fn uncertainty<'a>(
-    data: &'a Data,
-    text: &'a str,
-    lines: &'a Lines,
-) -> Result<impl Fn(usize) -> Result<Weight, Error> + 'a, Error> {
-    let whole: Option<Uncertainty> = match (&data.u_brdf, data.brdf.uncertainty) {
-        (None, Some(raw)) => Some(serde_json::from_str(raw.get()).map_err(|error| {
-            let (line, _) = lines.place(text, raw.get());
-            Error::new(format!("the uncertainty of BRDF: {error}"))
-                .at_line(line)
-                .help("give value and unit")
-        })?),
-        _ => None,
-    };
-    let unit = match (&data.u_brdf, &whole) {
-        (Some(variable), _) => variable.unit.as_str(),
-        (None, Some(whole)) => whole.unit.as_str(),
-        (None, None) => "sr^-1",
-    };
-    let relative = match Unit::parse(unit) {
-        Some(Unit::PerSr) => false,
-        Some(Unit::Percent) => true,
-        _ => {
-            return Err(
-                Error::new(format!("the unit of the uncertainty of BRDF is '{}'", shown(unit)))
-                    .help("give sr^-1, 1/sr or %"),
-            );
-        }
-    };
-    Ok(move |k: usize| {
-        let x = match (&data.u_brdf, &whole) {
-            (Some(variable), _) => number(variable.values[k], text, lines)?,
-            (None, Some(whole)) => whole.value,
-            (None, None) => return Ok(Weight::Unknown),
-        };
-        Ok(if relative {
-            Weight::RelativeSigma(x / 100.0)
-        } else {
-            Weight::Sigma(x)
-        })
-    })
-}
-
-/// The number at a place of the text; null is no value.
-fn number(raw: &RawValue, text: &str, lines: &Lines) -> Result<f64, Error> {
-    if raw.get() == "null" {
-        return Ok(f64::NAN);
-    }
-    raw.get().parse().map_err(|_| {
-        let (line, column) = lines.place(text, raw.get());
-        Error::new(format!("'{}' is not a number", shown(raw.get())))
-            .at_line(line)
-            .at_column(column)
-            .help("write a number, or null and use --drop-invalid if there is no value")
-    })
-}
-
-fn in_degrees(name: &str, angle: &Variable) -> Result<fn(f64) -> f64, Error> {
-    match Unit::parse(&angle.unit) {
-        Some(Unit::Deg) => Ok(|angle| angle),
-        Some(Unit::Rad) => Ok(f64::to_degrees),
-        _ => Err(Error::new(format!("the unit of {name} is '{}'", shown(&angle.unit))).help("give deg, ° or rad")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::raw::Weight;
 
     fn read(text: &str) -> Result<Vec<RawScan>, Error> {
         super::read(text, &ReadOptions::default())

@@ -2,13 +2,13 @@
 
 mod axes;
 mod corner;
+mod incidence;
+mod side;
 
-use axes::Side;
 use corner::{Axis, Corner};
+use side::{Side, add_angle, angle};
 
-use crate::error::{Error, shown};
-use crate::input::about::ThetaI;
-use crate::input::facts::{self, Facts};
+use crate::error::Error;
 use crate::input::format::{Format, Reader};
 use crate::input::kind::Kind;
 use crate::input::options::ReadOptions;
@@ -16,7 +16,6 @@ use crate::input::raw::{RawScan, Row, Weight};
 use crate::input::repeats;
 use crate::input::rows::{self, Decimal, number_in};
 use crate::input::units::Angles;
-use crate::number::shortest;
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -55,13 +54,6 @@ fn is(text: &str) -> bool {
         || matches!(lengths[..], [head, row] if head == row || head > 3 && row > 0)
 }
 
-/// The angle in a cell, degrees: `20`, `22,5`, `20°`, `20 deg`, `AOI = 20`.
-fn angle(cell: &str) -> Option<f64> {
-    rows::parse(cell, Decimal::Unknown)
-        .filter(|angle| angle.is_finite())
-        .or_else(|| facts::angle_in(cell))
-}
-
 /// The one scan in the matrix; cells that are empty or NaN were not measured.
 ///
 /// What the corner cell says is obeyed: which angle is along which side, their unit, what the values are.
@@ -79,7 +71,7 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
             let corner = Corner::of(cells[0], options).map_err(|error| error.at_line(line))?;
             let mut top = Side::new(line);
             for column in 1..cells.len() {
-                add_angle(&mut top, &corner, cells, column, line)?;
+                add_angle(&mut top, corner.angles, cells, column, line)?;
             }
             first = Some((corner, top));
             return Ok(());
@@ -95,7 +87,7 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         if body.is_empty() {
             side.line = line;
         }
-        add_angle(&mut side, corner, cells, 0, line)?;
+        add_angle(&mut side, corner.angles, cells, 0, line)?;
         body.push((line, values));
         Ok(())
     })?;
@@ -112,12 +104,12 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     scan.about.divisor = corner.divisor;
     scan.about.angles_named = corner.angles.is_some();
     if axes.contains(&Axis::Azimuth) {
-        scan.about.theta_i = one_theta_i(text, axes, [&side, &top], scan.angles, options)?;
+        scan.about.theta_i = incidence::one_theta_i(text, axes, [&side, &top], scan.angles, options)?;
         let note = "one axis of the matrix has azimuths, 180 being forward";
         scan.about.notes.push(note.to_string());
     } else {
-        let incidence = if axes[0] == Axis::Incidence { &side } else { &top };
-        refuse_remark(text, incidence, scan.angles)?;
+        let along = if axes[0] == Axis::Incidence { &side } else { &top };
+        incidence::refuse_remark(text, along, scan.angles)?;
     }
     for (&side, (line, values)) in side.angles.iter().zip(body) {
         for (&top, value) in top.angles.iter().zip(values) {
@@ -144,83 +136,10 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     Ok(vec![scan])
 }
 
-/// Adds the angle in a cell to those of its side.
-fn add_angle(side: &mut Side, corner: &Corner, cells: &[&str], column: usize, line: u64) -> Result<(), Error> {
-    let cell = cells[column];
-    let at = |error: Error| error.at_line(line).at_column(column as u64 + 1);
-    let bare = rows::parse(cell, Decimal::Unknown).is_some();
-    let found = angle(cell).filter(|angle| angle.abs() <= 360.0).ok_or_else(|| {
-        at(Error::new(format!("'{}' is not an angle", shown(cell))).help("write it in degrees, like 20 or 20 deg"))
-    })?;
-    if !bare && corner.angles == Some(Angles::Rad) {
-        let what = "some angles are in degrees and some in radians";
-        return Err(at(
-            Error::new(what).help("give all in one unit, and name it in the corner")
-        ));
-    }
-    side.sure &= !bare;
-    side.incidence |= !bare && cell.starts_with(char::is_alphabetic);
-    side.angles.push(found);
-    Ok(())
-}
-
-/// Where the one angle of incidence of a matrix with azimuths is from.
-fn one_theta_i(
-    text: &str,
-    axes: [Axis; 2],
-    sides: [&Side; 2],
-    unit: Angles,
-    options: &ReadOptions,
-) -> Result<ThetaI, Error> {
-    let remark = remarks(text).one_theta_i()?;
-    if options.theta_i.is_empty() && remark.is_none() {
-        let at = usize::from(axes[1] == Axis::Azimuth);
-        let place = ["rows", "columns"][at];
-        let why = if sides[at].has_azimuths(options.angles.unwrap_or(unit)) {
-            "at angles of more than 90 degrees, so they are azimuths"
-        } else {
-            "azimuths by the corner cell,"
-        };
-        return Err(Error::new(format!(
-            "the {place} are {why} and the matrix is of one angle of incidence"
-        ))
-        .at_line(sides[at].line)
-        .help("give it in degrees with --theta-i 20; an azimuth of 180 is forward, or 0 with --forward negative"));
-    }
-    Ok(ThetaI::Missing {
-        remark,
-        names: [].into(),
-    })
-}
-
-/// What the remarks of a matrix say.
-fn remarks(text: &str) -> Facts {
-    let lines = rows::lines(text).filter(|(_, _, line)| line.trim_start().starts_with('#'));
-    Facts::of(lines.map(|(number, _, line)| (number, line)))
-}
-
-/// Refuses a remark that says another angle of incidence than the matrix.
-fn refuse_remark(text: &str, incidence: &Side, unit: Angles) -> Result<(), Error> {
-    let said = remarks(text).theta_i;
-    let has = |said: f64, angle: f64| (said - unit.degrees(angle)).abs() < 0.05;
-    let all = |angle: f64| said.iter().any(|&(_, said)| has(said, angle));
-    let Some(&(line, degrees)) = said
-        .first()
-        .filter(|_| !incidence.angles.iter().all(|&angle| all(angle)))
-    else {
-        return Ok(());
-    };
-    Err(Error::new(format!(
-        "a remark says that theta_i is {} degrees, and the matrix has angles of incidence along one side",
-        shortest(degrees)
-    ))
-    .at_line(line)
-    .help("remove the remark if they are; else write a table, one value a row, with theta_s, brdf and a column for what they are"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::about::ThetaI;
     use crate::input::units::Quantity;
 
     fn read(text: &str) -> Result<Vec<RawScan>, Error> {

@@ -1,11 +1,10 @@
 //! What the two sides of a matrix are, by the corner and by their numbers.
 
 use super::corner::{Axis, Names};
+use super::side::Side;
 use crate::error::Error;
 use crate::input::options::ReadOptions;
 use crate::input::units::Angles;
-use crate::number::shortest;
-use crate::plain::some_of;
 
 /// A polar angle in radians is less than this; numbers that all are may be such.
 const RIGHT_ANGLE: f64 = 1.6;
@@ -13,50 +12,6 @@ const RIGHT_ANGLE: f64 = 1.6;
 const COUNT: f64 = 5.0;
 /// Fractions below this may be wavelengths in micrometres.
 const MICROMETRES: f64 = 30.0;
-
-/// The numbers along one side.
-pub struct Side {
-    /// As they stand there.
-    pub angles: Vec<f64>,
-    /// True if each has a unit or the name of an angle beside it.
-    pub sure: bool,
-    /// True if they are named as angles of incidence.
-    pub incidence: bool,
-    /// The line of the first.
-    pub line: u64,
-}
-
-impl Side {
-    /// One without angles, whose first is to stand on this line.
-    pub fn new(line: u64) -> Side {
-        Side {
-            angles: Vec::new(),
-            sure: true,
-            incidence: false,
-            line,
-        }
-    }
-
-    /// True if one is beyond the horizon, as azimuths are.
-    pub fn has_azimuths(&self, unit: Angles) -> bool {
-        // A polar angle is within 90 degrees, or beyond 270 where a file counts from 0 to 360.
-        let is_azimuth = |angle: f64| (angle.abs() + 1e-9) % 360.0 > 90.1 && angle.abs() % 360.0 < 269.9;
-        self.angles.iter().any(|&angle| is_azimuth(unit.degrees(angle)))
-    }
-
-    fn has_negative(&self) -> bool {
-        self.angles.iter().any(|&angle| angle < 0.0)
-    }
-
-    fn largest(&self) -> f64 {
-        self.angles.iter().map(|angle| angle.abs()).fold(0.0, f64::max)
-    }
-
-    /// The same numbers, for people.
-    fn shown(&self) -> String {
-        some_of(&self.angles.iter().map(|&angle| shortest(angle)).collect::<Vec<_>>())
-    }
-}
 
 /// What the first column and the first row are.
 ///

@@ -43,12 +43,7 @@ pub fn doubt(scan: &RawScan, options: &ReadOptions) -> Result<(), Error> {
     let error = Error::new(what).help(format!(
         "say --columns percent_sigma={number} if so, take them as they are with --columns sigma={number} or rel_sigma={number}, or leave them out with --weights equal"
     ));
-    let error = Error { column, ..error };
-    Err(if first.line > 0 {
-        error.at_line(first.line)
-    } else {
-        error
-    })
+    Err(error.at(first.line, column))
 }
 
 #[cfg(test)]

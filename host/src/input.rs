@@ -20,6 +20,7 @@ mod finder;
 pub mod format;
 pub mod formats;
 pub mod head;
+mod idle;
 mod incidence;
 mod join;
 pub mod kind;
@@ -108,6 +109,7 @@ fn read_each<B: AsRef<[u8]>>(
     for (file, scans) in files {
         measurements.extend(measured(&file, scans, options)?);
     }
+    idle::refuse(&measurements, options)?;
     // One file an angle of incidence is most often one scan.
     if several && measurements.iter().all(|measurement| measurement.about.one_angle) {
         let note = "this is one angle of incidence; --one-scan takes all files as one scan".to_string();
@@ -194,7 +196,9 @@ pub fn read_one(path: &Path, options: &ReadOptions, stdin: &mut dyn Read) -> Res
 /// ```
 pub fn parse(file: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Measurement>, Error> {
     let scans = raw_scans(file, bytes, options).map_err(|error| error.in_file(file))?;
-    measured(file, scans, options)
+    let scans = measured(file, scans, options)?;
+    idle::refuse(&scans, options)?;
+    Ok(scans)
 }
 
 /// The scans that are wanted of the bytes of a file, as they stand there, and its format.

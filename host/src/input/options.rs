@@ -99,7 +99,7 @@ pub struct ReadOptions {
     /// Relative standard deviation that is added to each in square
     #[cfg_attr(feature = "cli", arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse::not_negative, help_heading = "Weights"))]
     pub sigma_floor: f64,
-    /// Factor of the residuals at one angle of incidence; repeatable
+    /// Factor of the residuals at one angle of incidence, which must be there; repeatable
     #[cfg_attr(feature = "cli", arg(long, value_name = "DEG=FACTOR", value_parser = parse::weight_angle, help_heading = "Weights"))]
     #[serde(deserialize_with = "parse::weights")]
     pub weight_angle: Vec<(f64, f64)>,

@@ -114,17 +114,31 @@ fn another_file_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let copy = |set: u32| write(&folder, "scan.csv", std::fs::read(noisy(set)).unwrap());
     let scan = copy(3);
-    let result = write(&folder, "fit.json", succeed(&["fit", &scan, "--format", "json"]));
+    let json = write(&folder, "fit.json", succeed(&["fit", &scan, "--format", "json"]));
+    let table = succeed(&["fit", &scan, "--format", "csv"]);
+    let csv = write(&folder, "fit.csv", table.clone());
+    let minima = succeed(&["fit", &scan, "--format", "csv", "--minima"]);
+    let minima = write(&folder, "minima.csv", minima);
+    let report = |results: &str| brdfit(&["report", results, "-o", "-"], b"");
+    assert_eq!(report(&csv).code, 0);
     copy(1);
-    for command in ["certify", "report"] {
-        let message = fail(&[command, &result]);
-        assert!(
-            message.starts_with(&scan)
-                && message.contains("its SHA-256 is ")
-                && message.contains(&format!("; give {command} the files as they were")),
-            "{message}"
-        );
+    for result in [json, csv, minima] {
+        for command in ["certify", "report"] {
+            let message = fail(&[command, &result]);
+            assert!(
+                message.starts_with(&scan)
+                    && message.contains("its SHA-256 is ")
+                    && message.contains(&format!("; give {command} the files as they were")),
+                "{message}"
+            );
+        }
     }
+    // Tables of version 0.1 have no such column, and are read.
+    let without = |line: &str| line.rsplit_once(',').unwrap().0.to_string() + "\n";
+    assert!(table.lines().next().unwrap().ends_with(",sha256"));
+    copy(3);
+    let old = write(&folder, "old.csv", table.lines().map(without).collect::<String>());
+    assert_eq!(report(&old).code, 0);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub struct StoredFit {
     pub scan: Option<String>,
     /// The terms of the model that it was fitted with, if that is told and has any.
     pub terms: Option<u8>,
-    /// The SHA-256 of each file that it was read from; empty if that is not told, as in tables.
+    /// The SHA-256 of each file that it was read from; empty if that is not told, as in tables of version 0.1.
     pub sha256: Vec<String>,
     /// Its model with its parameters, or why it has none.
     pub material: Result<Material, String>,
@@ -104,7 +104,7 @@ fn csv(text: &str) -> Option<Vec<StoredFit>> {
             file: of_cell(row.get(file)?).into(),
             scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             terms: cell("terms").and_then(|names| terms(&names.replace('+', ",")).ok()),
-            sha256: Vec::new(),
+            sha256: cell("sha256").map_or_else(Vec::new, |all| all.split_terminator('+').map(String::from).collect()),
             material,
         });
     }

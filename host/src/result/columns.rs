@@ -138,6 +138,7 @@ pub fn of_minima(models: &[&Model]) -> Vec<Column> {
     [scan(), asked(), parameters(models), minimum()]
         .into_iter()
         .flatten()
+        .chain([sha256()])
         .collect()
 }
 
@@ -367,10 +368,21 @@ fn of_scan() -> Vec<Column> {
             let hints = row.scan?.hints.iter().map(|hint| hint.text.as_str());
             Some(hints.collect::<Vec<_>>().join(" | "))
         }),
+        sha256(),
         number("elapsed_s", "s", "time of the search", Time, |row| {
             Some(row.scan?.elapsed?.as_secs_f64())
         }),
     ]
+}
+
+/// What tells whether a file is still the one that was fitted.
+fn sha256() -> Column {
+    let about = "SHA-256 of the file of the scan; of several files one each";
+    text("sha256", about, Json::Otherwise, |row| {
+        let sources = row.scan?.about.sources.iter();
+        let all: Vec<&str> = sources.map(|source| source.sha256.as_str()).collect();
+        Some(all.join("+"))
+    })
 }
 
 fn text(name: &str, about: &str, json: Json, of: fn(&FitRow) -> Option<String>) -> Column {

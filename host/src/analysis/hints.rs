@@ -2,6 +2,7 @@
 
 mod curve;
 mod offset;
+mod peak;
 mod prior;
 mod shadow;
 mod unmeasured;
@@ -11,6 +12,7 @@ use serde::Serialize;
 
 use crate::engine::scale::Scale;
 use crate::engine::{FitOptions, Outcome, robust};
+use crate::input::kind::Kind;
 use crate::input::units::{Forward, Quantity};
 use crate::input::{Measurement, side};
 use crate::number::four;
@@ -60,6 +62,20 @@ fn before_fit(measurement: &Measurement) -> Vec<Hint> {
             ),
         )
     }));
+    hints.extend(peak::at_normal(&measurement.samples).map(|theta_i| {
+        Hint::new(
+            "peak",
+            format!("the values peak at theta_s = 0 for theta_i = {theta_i} deg: is theta_s counted from the specular direction? then add theta_i to it"),
+        )
+    }));
+    if measurement.about.asked.forward.is_none() && measurement.about.kind != Kind::Own {
+        hints.extend(peak::behind(&measurement.samples).map(|theta_i| {
+            Hint::new(
+                "side",
+                format!("all samples are on the side of incidence and peak where theta_s = -theta_i, at theta_i = {theta_i} deg: if that is the specular peak, --forward negative"),
+            )
+        }));
+    }
     hints.extend(shadow::width(&measurement.samples).map(|degrees| {
         Hint::new(
             "shadow",

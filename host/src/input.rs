@@ -26,6 +26,7 @@ mod join;
 pub mod kind;
 mod large_sigma;
 pub mod left_out;
+mod marks;
 pub mod measurement;
 pub mod options;
 pub mod own;

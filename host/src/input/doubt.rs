@@ -4,7 +4,7 @@ use super::columns::Polar;
 use super::options::ReadOptions;
 use super::raw::{RawScan, Row};
 use super::units::{Angles, Quantity};
-use super::{azimuths, large_sigma};
+use super::{azimuths, large_sigma, marks};
 use crate::error::Error;
 use crate::number::shortest;
 
@@ -12,8 +12,6 @@ use crate::number::shortest;
 const RIGHT_ANGLE: f64 = 1.6;
 /// A reflectance factor that no surface has in all directions.
 const BRIGHTEST: f64 = 2.0;
-/// A BRDF that no surface has: light of 100 nm from a mirror of 1 m goes into 1e-14 sr.
-const MARK: f64 = 1e15;
 /// A scan over fewer degrees may be of a peak alone.
 const WIDE: f64 = 60.0;
 /// Fewer samples say little of all directions.
@@ -33,6 +31,7 @@ pub fn settle(scan: &mut RawScan, options: &ReadOptions) -> Result<(), Error> {
     }
     full_turn(scan, unit)?;
     if options.value_unit.is_none() {
+        marks::doubt(scan, unit, options)?;
         size_of_values(scan, unit, options)?;
     }
     azimuths::doubt(scan, unit, options)?;
@@ -149,11 +148,11 @@ fn from_the_surface(scan: &RawScan, low: f64, beyond: usize) -> Result<(), Error
     Err(error.at(0, scan.places.theta_s))
 }
 
-/// Refuses values which, over a wide range of angles, are all brighter than any surface, and marks of no value among others.
+/// Refuses values which, over a wide range of angles, are all brighter than any surface.
 fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result<(), Error> {
     let quantity = options.quantity.unwrap_or(scan.quantity);
     let (mut low, mut high, mut least) = (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY);
-    let (mut valid, mut mark) = (0, None);
+    let mut valid = 0;
     let wanted = |row: &&Row| options.max_value.is_none_or(|largest| row.value < largest);
     for row in scan.rows.iter().filter(wanted) {
         let theta_s = unit.degrees(row.theta_s);
@@ -161,21 +160,7 @@ fn size_of_values(scan: &RawScan, unit: Angles, options: &ReadOptions) -> Result
             (low, high) = (low.min(theta_s), high.max(theta_s));
             least = least.min(brdf * std::f64::consts::PI);
             valid += 1;
-            if brdf >= MARK {
-                mark.get_or_insert(row);
-            }
         }
-    }
-    if let Some(row) = mark.filter(|_| least < MARK) {
-        let error = Error::new(format!(
-            "the value is {}, as no surface has: does it stand for none?",
-            shortest(row.value)
-        ))
-        .help(format!(
-            "leave such values out with --max-value {}, or take them as they are with --value-unit plain",
-            shortest(row.value)
-        ));
-        return Err(error.at(row.line, scan.places.value));
     }
     // What is known to be in percent is right.
     if valid < FEW || scan.about.divisor != 1.0 || !(high - low >= WIDE && least >= BRIGHTEST) {

@@ -54,7 +54,7 @@ pub struct Corner {
 }
 
 impl Corner {
-    /// What this cell says: nothing, `theta_s\theta_i`, `theta_s (deg)`, `BRF (%)`, `550 nm`.
+    /// What this cell says: nothing, `theta_s\theta_i`, `theta_s (deg)`, `BRF (%)`, `BRF (%) theta_s\theta_i`, `550 nm`.
     ///
     /// # Errors
     /// It says anything else, or a unit does not fit.
@@ -78,6 +78,14 @@ impl Corner {
         }
         if let Some((names, heads)) = pair(text) {
             return of_angles(names, unit_of_angles(&heads, options)?);
+        }
+        if let Some((value, sides)) = value_and_sides(text) {
+            let (names, heads) = sides;
+            return Ok(Corner {
+                names,
+                angles: unit_of_angles(&heads, options)?,
+                ..values(&value, options)?
+            });
         }
         // A single name with an arrow leaves the other side open, and may contradict the order that is usual.
         if let Some(names) = one(&whole) {
@@ -121,8 +129,29 @@ fn pair(text: &str) -> Option<(Names, [Head; 2])> {
     })
 }
 
+/// What the values are, and then both sides, or both sides first: `BRDF theta_i\theta_s`, `theta_i\theta_s: BRF (%)`.
+fn value_and_sides(text: &str) -> Option<(Head, (Names, [Head; 2]))> {
+    let is_mark = |c: char| c.is_whitespace() || ":;,|([".contains(c);
+    let marks: Vec<usize> = text.match_indices(is_mark).map(|(at, _)| at).collect();
+    let value = |part: &str| {
+        let head = Head::new(part.trim());
+        matches!(role::role(&head), Role::Value(_)).then_some(head)
+    };
+    let sides = |part: &str| pair(part.trim_matches(|c: char| c.is_whitespace() || ":;,|".contains(c)));
+    // The longest part that says what the values are has their unit in it.
+    let first = marks
+        .iter()
+        .rev()
+        .find_map(|&at| Some((value(&text[..at])?, sides(&text[at..])?)));
+    first.or_else(|| {
+        marks
+            .iter()
+            .find_map(|&at| Some((value(&text[at..])?, sides(&text[..at])?)))
+    })
+}
+
 /// The side of a role, if it is an angle that says of which direction.
-fn axis(role: Role) -> Option<Axis> {
+pub fn axis(role: Role) -> Option<Axis> {
     match role {
         Role::ThetaI => Some(Axis::Incidence),
         Role::ThetaS => Some(Axis::Scattering),
@@ -271,6 +300,40 @@ mod tests {
             assert_eq!((found.quantity, found.divisor), (quantity, divisor), "{text}");
         }
         assert_eq!(corner("550 nm").unwrap().channel.as_deref(), Some("550 nm"));
+    }
+
+    #[test]
+    fn the_values_may_stand_beside_both_sides() {
+        use Axis::{Incidence, Scattering};
+        let up = Names::Both {
+            side: Incidence,
+            top: Scattering,
+        };
+        for (text, angles, quantity, divisor) in [
+            (r"BRDF theta_i\theta_s", None, Quantity::Brdf, 1.0),
+            (r"BRDF (1/sr) theta_i\theta_s", None, Quantity::Brdf, 1.0),
+            (r"BRDF: theta_i / theta_s [rad]", Some(Angles::Rad), Quantity::Brdf, 1.0),
+            (
+                r"BRF (%) | theta_i (deg)\theta_s (deg)",
+                Some(Angles::Deg),
+                Quantity::Brf,
+                100.0,
+            ),
+            (r"theta_i\theta_s ln(BRDF)", None, Quantity::LnBrdf, 1.0),
+            (r"theta_i\theta_s: BRDF [1/sr]", None, Quantity::Brdf, 1.0),
+            (r"theta_i\theta_s (BRDF)", None, Quantity::Brdf, 1.0),
+        ] {
+            let found = corner(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert_eq!((found.names, found.angles), (up, angles), "{text}");
+            assert_eq!((found.quantity, found.divisor), (quantity, divisor), "{text}");
+        }
+        for text in [
+            r"BTDF theta_i\theta_s",
+            r"sigma theta_i\theta_s",
+            r"log(BRDF) theta_i\theta_s",
+        ] {
+            assert!(corner(text).is_err(), "{text}");
+        }
     }
 
     #[test]

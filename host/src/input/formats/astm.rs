@@ -286,6 +286,13 @@ mod tests {
             ("lambda,R", "MEAS_NAME BRDF", 4, Some(5), "no value"),
             ("R (%),G", "NOTE x", 4, Some(5), "in percent"),
             ("R,signal (mV)", "NOTE x", 4, Some(6), "not in sr^-1"),
+            (
+                "R,log(BRDF)",
+                "NOTE x",
+                4,
+                Some(6),
+                "natural logarithm or that to base 10",
+            ),
         ] {
             let error = first(vars, name).unwrap_err();
             assert!(error.what.contains(what) && error.help.is_some(), "{error}");

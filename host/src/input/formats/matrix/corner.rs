@@ -356,6 +356,7 @@ mod tests {
             ("theta_s →", "understood neither"),
             ("counts", "not in sr^-1"),
             ("R (%)", "in percent"),
+            ("log(BRDF)", "natural logarithm or that to base 10"),
         ] {
             let error = corner(text).unwrap_err();
             assert!(error.what.contains(what) && error.help.is_some(), "{text}: {error}");

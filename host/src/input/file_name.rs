@@ -9,11 +9,15 @@ use crate::number::shortest;
 
 /// What may stand between a number and the words around it.
 const MARKS: [char; 8] = ['_', '-', ' ', '=', '(', ')', '+', '.'];
-/// Words in front of a number that is no angle of incidence, beside the names of other columns.
+/// Words in front of a number that is no angle of incidence, beside the names of other columns: what counts, in several languages, and other quantities.
 const OTHERS: &str = "sample specimen wafer slot lot batch panel tile plate coupon piece part box tray file test \
     trial try meas pos position place spot site step frame image img channel ch version ver v rev \
     revision copy serial sn exp experiment series day week cycle temp temperature gain thickness \
-    roughness load dose nummer";
+    roughness load dose nummer id job order set line row col n no nr avg average mean \
+    nd od filter size coat coats coating layer layers x y z rot rotation tilt stage det detector \
+    receiver scatter scattered scattering out view exposure integration power current voltage speed humidity rh \
+    age year month hour minute jan feb mar apr may jun jul aug sep oct nov dec grit rms ra rq rz sa sq \
+    vol mix pct ratio conc probe versuch lauf messung muestra essai echantillon prova campione monster";
 /// Units and the like that may stand apart behind a number that is no angle.
 const UNITS: &str = "nm um µm mm cm hz khz mhz ghz thz kv mv ma mw rpm ms sec secs min mins minutes h hr hrs hours \
     days degc degf °c °f celsius percent %";
@@ -34,7 +38,7 @@ struct Number<'a> {
 /// So is one behind a word such as `sample`, and one before letters has another unit: `60s`.
 ///
 /// # Errors
-/// There are several such numbers, or one may go on: `aoi30p5`, `aoi_44_5`, `aoi45to60`.
+/// There are several such numbers, or one may go on: `aoi30p5`, `aoi_44_5`, `aoi45to60`; or the one that is left stands beside one that counts: `run_7_45`.
 pub fn theta_i(file: &str) -> Result<Option<f64>, Error> {
     let path = Path::new(file);
     let text = |part: Option<&std::ffi::OsStr>| part.map(|part| part.to_string_lossy().to_string()).unwrap_or_default();
@@ -45,13 +49,20 @@ pub fn theta_i(file: &str) -> Result<Option<f64>, Error> {
     }
     let (mut tagged, mut all) = (Vec::new(), Vec::new());
     let mut end = 0;
+    // The number that counts right before this one, which may be the angle as well.
+    let mut rival: Option<String> = None;
     while let Some(number) = next(&name, &mut end) {
         let is_tagged = number.is_keyed() || number.is_degrees();
+        let before = rival.take();
         if is_tagged || !(number.is_counted() || number.is_other()) {
             let list = if is_tagged { &mut tagged } else { &mut all };
+            list.extend(before.filter(|_| !is_tagged));
             list.push(shortest(number.value));
             // A comma or a `p` is a point, and a second number another half of this one, or its rival.
             list.extend(number.goes_on(is_tagged));
+        } else if number.may_be_angle() && name[end..].starts_with(MARKS) {
+            let behind = name[end..].trim_start_matches(MARKS);
+            rival = Some(shortest(number.value)).filter(|_| behind.starts_with(|c: char| c.is_ascii_digit()));
         }
     }
     let several = |numbers: &[String]| {
@@ -121,7 +132,7 @@ impl Number<'_> {
 
     /// True of a number that counts files or samples.
     fn is_counted(&self) -> bool {
-        let glued = self.before.ends_with(char::is_alphabetic) || self.before.ends_with('(');
+        let glued = self.before.ends_with(char::is_alphabetic) || self.before.ends_with(['(', '#']);
         let padded = self.text.starts_with('0') && self.text.len() > 1 && !self.text.starts_with("0.");
         glued || padded || self.value > 0.0 && self.value < 5.0
     }
@@ -142,6 +153,12 @@ impl Number<'_> {
         let is_unit = is_among(UNITS, &behind) || ["C", "F", "K"].contains(&behind.as_str());
         let is_glued = self.after.starts_with(|c: char| c.is_alphabetic());
         self.value.is_nan() || self.keys().iter().any(is) || is_glued || is_unit
+    }
+
+    /// True of a number that may be an angle of incidence, whatever word stands before it.
+    fn may_be_angle(&self) -> bool {
+        let padded = self.text.starts_with('0') && self.text.len() > 1;
+        !padded && (self.value == 0.0 || (5.0..90.0).contains(&self.value))
     }
 
     /// What else it may be, for people, if digits go on behind it: `30p5`, `30,5`, `44_5`, `45to60`.
@@ -196,7 +213,10 @@ mod tests {
             ("25degC_60.dat", Some(60.0)),
             ("20_s.dat", Some(20.0)),
             ("s-pol_45.csv", Some(45.0)),
-            ("paint7_20.csv", Some(20.0)),
+            ("run_07_45.csv", Some(45.0)),
+            ("paint2_20.csv", Some(20.0)),
+            ("exp10_aoi20.csv", Some(20.0)),
+            ("exp10_b_20.csv", Some(20.0)),
             ("aoi3.csv", Some(3.0)),
             ("scan_0.csv", Some(0.0)),
         ] {
@@ -209,6 +229,7 @@ mod tests {
         let names = "paint.csv; paint_550nm.csv; run2026.csv; paint7.csv; scan_026.csv; sample 3.csv; \
             run_7.csv; sample_12.csv; 25degC.csv; 25 °C.csv; 25_C.csv; paint_60min.csv; \
             paint 60 min.csv; wafer 25 slot 3.csv; 45C.csv; 60s.csv; 10x.csv; 12h30.csv; \
+            filter_10.csv; OD_10.csv; det_20.csv; nov_20.csv; Ra_10.csv; paint #20.csv; versuch 20.csv; \
             batch_5.csv; Nr. 9.csv; no_9.csv; 5 um.csv; 0.5V.csv; theta_s_30.csv; phi_45.csv; \
             lambda_10.csv; paint (12).csv; 25_C_a.csv; v1.20.csv; 50%.csv";
         for name in names.split("; ") {
@@ -219,6 +240,7 @@ mod tests {
     #[test]
     fn names_that_may_give_two_angles() {
         let names = "paint_7_20.csv; aoi30p5.csv; aoi30,5.csv; paint_30,5.csv; aoi_44_5.csv; aoi_4p5.csv; \
+            run_7_45.csv; exp10_20.csv; paint7_20.csv; sample 12 - 30.csv; \
             aoi45to60.csv; aoi 45-60.csv; 45deg_0deg.csv; aoi_22_5; aoi22.5; 2024-01-15.csv";
         for name in names.split("; ") {
             let error = theta_i(name).map(|angle| panic!("{name}: {angle:?}")).unwrap_err();

@@ -113,9 +113,14 @@ fn with_breaks(name: &str) -> (String, Vec<usize>) {
     let mut plain = String::with_capacity(name.len());
     let mut breaks: Vec<usize> = Vec::new();
     let mut was_small = false;
-    let mut letters = name.chars().peekable();
-    while let Some(written) = letters.next() {
-        let next = letters.peek();
+    let minus = name.trim_start().strip_prefix(['-', '\u{2212}', '\u{2013}']);
+    if minus.is_some_and(|rest| rest.starts_with(|c: char| c.is_alphabetic() || c == '(')) {
+        // Such as `-log10(BRDF)`.
+        plain.push_str("minus");
+    }
+    let mut letters = name.char_indices().peekable();
+    while let Some((at, written)) = letters.next() {
+        let next = letters.peek().map(|(_, next)| next);
         let begin = plain.len();
         let is_capital = written.is_uppercase() && was_small;
         was_small = written.is_lowercase();
@@ -127,6 +132,11 @@ fn with_breaks(name: &str) -> (String, Vec<usize>) {
                 'λ' => plain.push_str("lambda"),
                 'σ' => plain.push_str("sigma"),
                 '±' => plain.push_str("sigma"),
+                // What is computed of a value is another.
+                '√' | '∛' => plain.push_str("root"),
+                '∂' => plain.push_str("delta"),
+                '′' => plain.push_str("prime"),
+                '/' | '÷' if name[at + c.len_utf8()..].trim_start().starts_with("cos") => plain.push_str("over"),
                 'ᵢ' => plain.push('i'),
                 'ᵣ' => plain.push('r'),
                 'ₛ' => plain.push('s'),
@@ -184,6 +194,16 @@ mod tests {
         assert_eq!(seen("BRF (%)"), ("brf".to_string(), Some(Unit::Percent), None));
         assert_eq!(seen("ln(BRDF)"), ("lnbrdf".to_string(), None, None));
         assert_eq!(seen("brdf*cos(theta_s)").0, "brdfcosthetas");
+        for (text, name) in [
+            ("-log10(BRDF)", "minuslog10brdf"),
+            ("\u{2212}theta_s", "minusthetas"),
+            ("√BRDF", "rootbrdf"),
+            ("BRDF′", "brdfprime"),
+            ("BRDF / cos(theta_s)", "brdfovercosthetas"),
+            ("- AOI -", "aoi"),
+        ] {
+            assert_eq!(seen(text).0, name, "{text}");
+        }
         assert_eq!(seen("U (k=2)"), ("u".to_string(), None, Some(2.0)));
         assert_eq!(seen("U (k=2, %)"), ("u".to_string(), Some(Unit::Percent), Some(2.0)));
         assert_eq!(seen("U_BRDF k=1.96").2, Some(1.96));

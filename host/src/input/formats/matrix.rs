@@ -95,6 +95,7 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
         return Err(Error::new("there are no rows below the angles").help("give one row a scattering angle"));
     };
     let axes = axes::of(corner.names, corner.angles, &side, &top, options)?;
+    incidence::refuse_sides(text, axes)?;
     let mut scan = RawScan::new(
         corner.channel.into_iter().collect(),
         corner.angles.unwrap_or(Angles::Deg),
@@ -274,6 +275,14 @@ mod tests {
             assert!(error.what.contains(what) && error.help.is_some(), "{error}");
             assert_eq!((error.line, error.column), (Some(line), column), "{error}");
         }
+        let sides = "# rows: theta_i, columns: theta_s\n,10,30\n20,1,2\n45,3,4\n";
+        let error = read(sides).unwrap_err();
+        assert!(
+            error.line == Some(1) && error.what.contains("other way round"),
+            "{error}"
+        );
+        let named = sides.replace(",10", r"theta_i\theta_s,10");
+        assert_eq!(read(&named).unwrap()[0].rows[1].theta_s, 30.0);
         // A remark that says the same is none too many.
         assert!(read("# AOI: 45\ntheta_s,45\n-80,1\n80,1\n").is_ok());
     }

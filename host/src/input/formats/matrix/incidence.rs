@@ -1,11 +1,13 @@
-//! What remarks and options say of the angle of incidence of a matrix.
+//! What remarks and options say of the angle of incidence of a matrix, and of its sides.
 
-use super::corner::Axis;
+use super::corner::{self, Axis};
 use super::side::Side;
 use crate::error::Error;
 use crate::input::about::ThetaI;
 use crate::input::facts::Facts;
+use crate::input::head::Head;
 use crate::input::options::ReadOptions;
+use crate::input::role;
 use crate::input::rows;
 use crate::input::units::Angles;
 use crate::number::shortest;
@@ -44,8 +46,37 @@ pub fn one_theta_i(
 
 /// What the remarks of a matrix say.
 fn remarks(text: &str) -> Facts {
+    Facts::of(remark_lines(text))
+}
+
+fn remark_lines(text: &str) -> impl Iterator<Item = (u64, &str)> {
     let lines = rows::lines(text).filter(|(_, _, line)| line.trim_start().starts_with('#'));
-    Facts::of(lines.map(|(number, _, line)| (number, line)))
+    lines.map(|(number, _, line)| (number, line))
+}
+
+/// Refuses a remark such as `rows: theta_i, columns: theta_s` that says other sides than these.
+///
+/// # Errors
+/// There is one, with its line.
+pub fn refuse_sides(text: &str, [side, top]: [Axis; 2]) -> Result<(), Error> {
+    for (line, remark) in remark_lines(text) {
+        let parts = remark.trim_start_matches(['#', ' ']).split([',', ';']);
+        for (key, value) in parts.filter_map(|part| part.split_once([':', '='])) {
+            let axis = match Head::new(key).plain.trim_end_matches('s') {
+                "row" | "firstcolumn" => side,
+                "column" | "col" | "firstrow" => top,
+                _ => continue,
+            };
+            if corner::axis(role::role(&Head::new(value))).is_some_and(|said| said != axis) {
+                return Err(
+                    Error::new("a remark says what the rows and the columns are, and they are taken the other way round")
+                        .at_line(line)
+                        .help(r"write in the corner what the first column is, then what the first row is, such as theta_i\theta_s"),
+                );
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a remark that says another angle of incidence than the matrix.

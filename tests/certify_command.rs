@@ -89,6 +89,42 @@ fn single_precision_is_proved_of_what_it_reports() {
     assert_eq!(single["certificate"]["complete"], true);
 }
 
+/// The data lines of a table, each BRDF times a factor.
+fn scaled(table: &str, factor: f64) -> String {
+    let line = |line: &str| {
+        let (angles, brdf) = line.rsplit_once(',').expect("columns");
+        match brdf.parse::<f64>() {
+            Ok(brdf) => format!("{angles},{}\n", brdf * factor),
+            Err(_) => format!("{line}\n"),
+        }
+    };
+    table.lines().map(line).collect()
+}
+
+#[test]
+fn scans_in_any_unit_are_proved_as_in_steradians() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = std::fs::read_to_string(noisy(2)).unwrap();
+    for factor in [1e-200, 1e-12] {
+        let scan = write(&folder, "scan.csv", scaled(&table, factor));
+        let proved = json(&["certify", &scan, "--within", "50%"]);
+        assert_eq!(proved["certificate"]["eps"], 0.5, "{factor}");
+        assert_eq!(proved["certificate"]["complete"], true, "{factor}");
+    }
+}
+
+/// Below the cost of an exact fit there is only rounding, of which no proof tells.
+#[test]
+fn nothing_is_proved_of_an_exact_fit() {
+    let scan = data("testdata2_ideal.csv").display().to_string();
+    assert_eq!(json(&["certify", &scan])["certificate"], Value::Null);
+    let text = succeed(&["certify", &scan]);
+    assert!(
+        text.contains("  proved     nothing: the fit is exact, its MSE^2 is rounding"),
+        "{text}"
+    );
+}
+
 #[test]
 fn results_are_proved_too() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,6 +3,7 @@
 use super::{PLACE_M, PLACE_N, dielectric, fit, grid, noisy, options};
 use brdfit::analysis::bootstrap::Noise;
 use brdfit::analysis::derived;
+use brdfit::analysis::profile::hold::hold;
 use brdfit::analysis::reflectance::reflectance;
 use brdfit::engine::{self, FitError, FitOptions, Material, Outcome, Values};
 use brdfit::instrument::ENERGY;
@@ -97,4 +98,12 @@ fn energy_is_conserved_at_the_least_cost() {
         ..bounded(true)
     };
     assert_eq!(engine::fit(&samples, &impossible), Err(FitError::Limit));
+    // Of a profile, the values that nothing allowed goes with are refuted.
+    let least = held.params[1];
+    let bound = FitOptions {
+        lower: Values::from([0.0, 0.5 * least, 0.0, 0.01, 1.5, 0.0]),
+        ..bounded(true)
+    };
+    let refuted = hold(&samples, &bound, &held, 0, 1.0).unwrap();
+    assert_eq!(refuted.cost, f64::INFINITY);
 }

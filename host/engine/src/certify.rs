@@ -106,6 +106,25 @@ pub fn certify(
     })
 }
 
+/// The cost of parameters as [`certify`] counts it, with weights over the largest, and how far rounding can move it.
+///
+/// # Errors
+/// [`FitError::Sample`], and [`FitError::NoProof`] if the model is not Eq. 14.
+pub fn cost(samples: &[Sample<f64>], options: &FitOptions, params: &Values) -> Result<(f64, f64), FitError> {
+    let of = |scene: Scene, params: &Values| {
+        let params = paper(params).ok_or(FitError::NoProof(options.model.name))?;
+        let cost = scene.cost(&params);
+        Ok((cost, scene.rounding(cost)))
+    };
+    match Scale::of(&[samples], options) {
+        None => of(scene(samples, options)?, params),
+        Some(scale) => {
+            let plain = scene(&scale.samples(samples), &scale.options(options)?)?;
+            of(plain, &scale.taken(options.model.parameters, params))
+        }
+    }
+}
+
 /// The parameters of Eq. 14 that these values are.
 fn paper(values: &Values) -> Option<Params<f64>> {
     <[f64; 6]>::try_from(&values[..]).ok().map(Params::from_array)

@@ -38,7 +38,7 @@ pub(crate) fn scaled(
     Ok(scale.outcome(found))
 }
 
-/// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost.
+/// Fits from given points to convergence, in `f64` and without a search: the best end, its cost and its parameters; `None` if no start has a finite cost, or none leads below a limit.
 ///
 /// # Errors
 /// [`FitError::Terms`], [`FitError::Sample`] and [`FitError::Interrupted`].

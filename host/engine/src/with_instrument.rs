@@ -170,7 +170,9 @@ fn descend_at(
         setup.steep = WALLS[2] * least().max(f64::MIN_POSITIVE);
     }
     let (searches, options) = searches(options)?;
-    searches.descend(samples, &options, &setup, starts)
+    let end = searches.descend(samples, &options, &setup, starts)?;
+    // Where no way leads below the limit, an end may be above it.
+    Ok(end.filter(|(_, values)| !is_above(&options, *values, samples)))
 }
 
 /// One search.

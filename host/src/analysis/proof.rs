@@ -16,6 +16,8 @@ pub struct Proof {
     pub asked: f64,
     /// What was: no cost below `1 - eps` of that of the fit; 1 says nothing.
     pub eps: f64,
+    /// Is the cost of the fit but rounding, so that nothing can be proved of what is below it?
+    pub exact: bool,
     /// Whether that is what was asked for.
     pub complete: bool,
     /// Number of boxes that were bounded.
@@ -39,7 +41,7 @@ impl Proof {
 
     /// The part that the least cost may be below that of the fit; none where next to nothing is proved.
     pub fn within(&self) -> Option<f64> {
-        (self.complete || self.eps < NOTHING).then_some(self.eps)
+        (self.eps < NOTHING || self.complete && !self.exact).then_some(self.eps)
     }
 }
 
@@ -94,7 +96,6 @@ pub fn of_outcome(
         until: Until::default(),
         ..*options
     };
-    let scene = certify::scene(&samples, &options)?;
     let no_proof = FitError::NoProof(options.model.name);
     let begun = Stopwatch::start();
     let stop = || (goal.interrupted)() || goal.limit.is_some_and(|limit| begun.elapsed() >= limit);
@@ -106,24 +107,26 @@ pub fn of_outcome(
         progress: goal.progress,
         watch: None,
     };
-    let cost = |outcome: &Outcome| outcome.material().eq_14().map(|params| scene.cost(&params));
+    let cost = |outcome: &Outcome| certify::cost(&samples, &options, &outcome.material().values);
     let best = outcome.material().eq_14().ok_or(no_proof)?;
     let found = certify(&samples, &options, &best, &claim)?;
     let elapsed = begun.elapsed();
     let mut outcome = outcome;
     // What the fit of another precision has left is not worth another search.
-    if cost(&outcome).is_none_or(|cost| found.cost < cost * (1.0 - SAME)) {
+    if found.cost < cost(&outcome)?.0 * (1.0 - SAME) {
         let known = [Values::from(found.params.to_array()), outcome.params];
         outcome = Outcome {
             robust: outcome.robust,
             ..engine::fit_from(&samples, &options, &known)?
         };
     }
-    let above = cost(&outcome).ok_or(no_proof)?;
+    let (above, rounding) = cost(&outcome)?;
+    let eps = of_fit(&found, above, rounding);
     let proof = Proof {
         asked: goal.eps,
-        eps: of_fit(&found, above, scene.rounding(above)),
-        complete: found.complete,
+        eps,
+        exact: rounding >= above,
+        complete: found.complete && eps < goal.eps + SINGLE,
         boxes: found.boxes,
         better: found.better > 0,
         elapsed: Some(elapsed),
@@ -137,10 +140,20 @@ pub const NOTHING: f64 = 0.99;
 /// Costs that differ by less than this part are those of one minimum.
 const SAME: f64 = 1e-9;
 
+/// A fit in `f32` may leave so much more than the proof's own, and what is asked is proved of it.
+const SINGLE: f64 = 1e-3;
+
+/// Rounding below this part of the cost is not told.
+const UNTOLD: f64 = 1e-6;
+
 /// What is proved of a fit of this cost, which may be above the least that the proof knows, as in `f32`.
 fn of_fit(found: &Certificate, cost: f64, rounding: f64) -> f64 {
-    if found.cost >= cost - rounding {
-        return found.eps;
-    }
-    1.0 - (1.0 - found.eps) * found.cost / cost
+    // Costs are proved but for rounding.
+    let rounded = if rounding < UNTOLD * cost { 0.0 } else { rounding / cost };
+    let eps = if found.cost >= cost - rounding {
+        found.eps
+    } else {
+        1.0 - (1.0 - found.eps) * found.cost / cost
+    };
+    (eps + rounded).min(1.0)
 }

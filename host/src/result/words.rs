@@ -182,6 +182,7 @@ pub fn proved(proof: &Proof) -> String {
                 "within {eps}{so_far}: no parameters within the bounds have an MSE^2 that is lower by more than {eps} ({work}){better}"
             )
         }
+        None if proof.exact => format!("nothing: the fit is exact, its MSE^2 is rounding ({work}){better}"),
         None => format!("nothing so far ({work}){better}"),
     }
 }

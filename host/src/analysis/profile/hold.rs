@@ -47,7 +47,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// The best of the fits from these parameters and from the minima, all with the held one at `value`.
+    /// The best of the fits from these parameters and from the minima, all with the held one at `value`; of infinite cost if there is none.
     pub fn at(&self, value: f64, starts: &[Values], searched: bool) -> Result<Point, FitError> {
         let with = |params: &Values| {
             let mut all = *params;
@@ -63,11 +63,19 @@ impl<'a> Held<'a> {
             ..*self.options
         };
         let mut starts: Vec<Values> = starts.iter().chain(&self.minima).map(with).collect();
-        if searched {
-            starts.push(engine::fit(self.samples, &options)?.params);
+        if searched && let Some(found) = allowed(engine::fit(self.samples, &options))? {
+            starts.push(found.params);
         }
-        let found = engine::descend(self.samples, &options, &starts)?;
+        let found = allowed(engine::descend(self.samples, &options, &starts))?.flatten();
         let (cost, params) = found.unwrap_or((f64::INFINITY, starts[0]));
         Ok(Point { value, cost, params })
+    }
+}
+
+/// Nothing where no parameters conserve energy with the one that is held: then its value is refuted, and the profile goes on.
+fn allowed<T>(found: Result<T, FitError>) -> Result<Option<T>, FitError> {
+    match found {
+        Err(FitError::Limit) => Ok(None),
+        found => found.map(Some),
     }
 }

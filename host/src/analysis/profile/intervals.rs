@@ -107,7 +107,24 @@ pub(super) fn referred(
             *(if high { &mut interval.high } else { &mut interval.low }) = end;
         }
     }
+    profile.intervals = nested(profile.intervals);
     Ok(profile)
+}
+
+/// The intervals, of which the wider one holds the narrower.
+/// Where the rise jumps, as at the end of a valley, both end in the jump, each at its own side of it; and thresholds of copies scatter.
+fn nested([narrow, wide]: [Interval; 2]) -> [Interval; 2] {
+    let low = if narrow.low.value < wide.low.value {
+        narrow.low
+    } else {
+        wide.low
+    };
+    let high = if narrow.high.value > wide.high.value {
+        narrow.high
+    } else {
+        wide.high
+    };
+    [narrow, Interval { low, high, ..wide }]
 }
 
 /// Where the rise passes `limit` outermost on one side; adds the points it makes. `None` if it does not before the bound.
@@ -146,4 +163,28 @@ fn crossing(profile: &mut Profile, held: &Held, limit: f64, high: bool) -> Resul
     }
     profile.points.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(Some(inside.value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_wider_interval_holds_the_narrower() {
+        let interval = |level: f64, low: f64, high: f64| {
+            let end = |value: f64| End {
+                value,
+                at_bound: value == 0.0,
+            };
+            Interval {
+                level,
+                low: end(low),
+                high: end(high),
+            }
+        };
+        let [narrow, wide] = [interval(0.68, 0.0, 3.0), interval(0.95, 1.0, 2.0)];
+        assert_eq!(nested([narrow, wide]), [narrow, interval(0.95, 0.0, 3.0)]);
+        let wide = interval(0.95, 0.0, 4.0);
+        assert_eq!(nested([narrow, wide]), [narrow, wide]);
+    }
 }

@@ -9,6 +9,7 @@ use crate::input::head::{Head, plain};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::number;
+use crate::input::unit::Unit;
 use crate::input::units::Angles;
 
 /// This format.
@@ -75,11 +76,12 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     if values.is_empty() {
         return Err(missing("column of values"));
     }
+    let unit = unit_of_angles(&heads, &angles).map_err(|error| error.at_line(header as u64 + 1))?;
     let mut scans: Vec<RawScan> = values
         .iter()
         .map(|value| {
             let column = |place: usize| place as u64 + 1;
-            let mut scan = RawScan::new(vec![names[value.column].to_string()], Angles::Rad);
+            let mut scan = RawScan::new(vec![names[value.column].to_string()], unit);
             scan.quantity = value.quantity;
             scan.about.divisor = value.divisor;
             scan.places = Places {
@@ -128,6 +130,18 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     }
     check_count(text, header, scans[0].rows.len())?;
     Ok(scans)
+}
+
+/// The unit of the angles: radians, if their names in `VARS` do not say degrees.
+fn unit_of_angles(heads: &[Head], angles: &[usize]) -> Result<Angles, Error> {
+    let is = |unit: Unit| angles.iter().find(|&&place| heads[place].unit == Some(unit));
+    match (is(Unit::Deg), is(Unit::Rad)) {
+        (Some(&place), Some(_)) => Err(Error::new("some angles are in degrees and some in radians")
+            .at_column(place as u64 + 1)
+            .help("give all in one unit, and say so in VARS")),
+        (Some(_), None) => Ok(Angles::Deg),
+        (None, _) => Ok(Angles::Rad),
+    }
 }
 
 /// What a number of this kind says of the uncertainty.
@@ -254,6 +268,16 @@ mod tests {
     }
 
     #[test]
+    fn angles_are_in_degrees_if_vars_says_so() {
+        let read = |vars: &str| read(&TEXT.replace("theta_i,phi_i,theta_s,phi_s", vars)).map(|scans| scans[0].angles);
+        let degrees = "theta_i (deg),phi_i (deg),theta_s (deg),phi_s (deg)";
+        assert_eq!(read(degrees).unwrap(), Angles::Deg);
+        assert_eq!(read("theta_i,phi_i,theta_s,phi_s").unwrap(), Angles::Rad);
+        let error = read(&degrees.replace("phi_s (deg)", "phi_s (rad)")).unwrap_err();
+        assert_eq!((error.line, error.column), (Some(4), Some(1)), "{error}");
+    }
+
+    #[test]
     fn names_say_what_the_values_are() {
         let first = |vars: &str, name: &str| {
             let text = TEXT.replace("LAB_NAME nowhere", name).replace("R,G", vars);
@@ -270,10 +294,16 @@ mod tests {
             first("R (%),G (%)", "MEAS_NAME BRDF").unwrap(),
             plain(Quantity::Brdf, 100.0)
         );
+        assert_eq!(
+            first("R,G", "MEAS_NAME BRDF (%)").unwrap(),
+            plain(Quantity::Brdf, 100.0)
+        );
+        assert_eq!(first("R,G", "MEAS_NAME BRF [%]").unwrap(), plain(Quantity::Brf, 100.0));
         let weighted = first("R,sigma", "MEAS_NAME BRDF").unwrap();
         assert_eq!((weighted.2, weighted.3), (Weight::Sigma(0.2), 1));
         assert_eq!(first("BRF,u (%)", "NOTE x").unwrap().2, Weight::RelativeSigma(0.002));
         for (vars, name, line, column, what) in [
+            ("R,G", "MEAS_NAME BRDF (mV)", 4, Some(5), "not in sr^-1"),
             ("R,BTDF", "MEAS_NAME BRDF", 4, Some(6), "transmission"),
             ("R,G", "MEAS_NAME BTDF", 1, None, "transmission"),
             (

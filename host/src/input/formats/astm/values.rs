@@ -2,23 +2,27 @@
 
 use crate::error::{Error, shown};
 use crate::input::columns::Value;
-use crate::input::head::{Head, plain};
+use crate::input::head::Head;
 use crate::input::options::ReadOptions;
 use crate::input::role::{self, Look, Role};
 use crate::input::unit::Unit;
 use crate::input::units::Quantity;
 use crate::input::{channel, find, finder, uncertainty};
 
+/// What `MEAS_NAME` says of the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Said {
+    /// What they are, if it is one of the quantities.
+    pub quantity: Option<Quantity>,
+    /// Their unit, if it names one beside that.
+    pub unit: Option<Unit>,
+}
+
 /// The values among the variables, each with its uncertainty; `angles` are the places of the angles, and `said` is what `MEAS_NAME` says.
 ///
 /// # Errors
 /// A variable is neither an angle nor a value nor the uncertainty of one, or `MEAS_NAME` and `VARS` differ.
-pub fn of(
-    heads: &[Head],
-    angles: &[usize],
-    said: Option<Quantity>,
-    options: &ReadOptions,
-) -> Result<Vec<Value>, Error> {
+pub fn of(heads: &[Head], angles: &[usize], said: Said, options: &ReadOptions) -> Result<Vec<Value>, Error> {
     let mut taken: Vec<bool> = (0..heads.len()).map(|place| angles.contains(&place)).collect();
     let free: Vec<usize> = (0..heads.len()).filter(|&place| !taken[place]).collect();
     let mut values = Vec::new();
@@ -34,13 +38,14 @@ pub fn of(
         values.push(Value {
             column,
             name: Some(head.text.clone()),
-            quantity: quantity(head, said).map_err(at)?,
+            quantity: quantity(head, said.quantity).map_err(at)?,
             divisor: {
-                if said.is_none() && options.quantity.is_none() {
+                if said.quantity.is_none() && options.quantity.is_none() {
                     channel::refuse_percent(head).map_err(at)?;
                     channel::refuse_log(head).map_err(at)?;
                 }
-                find::divisor(head, column, options)?
+                let unit = head.unit.or(said.unit);
+                find::divisor(&Head { unit, ..head.clone() }, column, options)?
             },
             weight: None,
             angle: None,
@@ -91,11 +96,11 @@ fn through(name: &str) -> Error {
     Error::new(format!("this holds transmission ('{name}'), and no reflection")).help("measure the BRDF")
 }
 
-/// What `MEAS_NAME` says of the values, if it is one of the quantities.
+/// What `MEAS_NAME` says of the values.
 ///
 /// # Errors
 /// It is transmission.
-pub fn said(text: &str) -> Result<Option<Quantity>, Error> {
+pub fn said(text: &str) -> Result<Said, Error> {
     for (line, row) in (1..).zip(text.lines()) {
         if row.starts_with("VARS") {
             break;
@@ -103,10 +108,13 @@ pub fn said(text: &str) -> Result<Option<Quantity>, Error> {
         let Some(name) = row.strip_prefix("MEAS_NAME").map(str::trim) else {
             continue;
         };
-        if finder::goes_through(&Head::new(name)) {
+        let head = Head::new(name);
+        if finder::goes_through(&head) {
             return Err(through(&shown(name)).at_line(line));
         }
-        return Ok(role::quantity(&plain(name)));
+        let quantity = role::quantity(&head.plain);
+        let unit = head.unit.filter(|_| quantity.is_some());
+        return Ok(Said { quantity, unit });
     }
-    Ok(None)
+    Ok(Said::default())
 }

@@ -1,5 +1,6 @@
 //! ASTM E1392 and E2387 text: `KEY value` lines up to `VARS`, then rows of comma-separated numbers, angles in radians.
 
+mod angles;
 mod values;
 
 use crate::error::{Error, shown};
@@ -9,8 +10,7 @@ use crate::input::head::{Head, plain};
 use crate::input::options::ReadOptions;
 use crate::input::raw::{Places, RawScan, Row, Weight};
 use crate::input::rows::number;
-use crate::input::unit::Unit;
-use crate::input::units::Angles;
+use angles::{PHI_I, PHI_S, THETA_I, THETA_S, name_forgotten};
 
 /// This format.
 pub const FORMAT: Format = Format {
@@ -19,12 +19,6 @@ pub const FORMAT: Format = Format {
     about: "ASTM E1392 or E2387 text",
     reader: Reader::Text { is, read },
 };
-
-/// Plain names of the angles.
-const THETA_I: [&str; 1] = ["thetai"];
-const THETA_S: [&str; 2] = ["thetas", "thetar"];
-const PHI_I: [&str; 1] = ["phii"];
-const PHI_S: [&str; 2] = ["phis", "phir"];
 
 /// True if the text begins as these files do.
 fn is(text: &str) -> bool {
@@ -76,7 +70,7 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     if values.is_empty() {
         return Err(missing("column of values"));
     }
-    let unit = unit_of_angles(&heads, &angles).map_err(|error| error.at_line(header as u64 + 1))?;
+    let unit = angles::unit(&heads, &angles).map_err(|error| error.at_line(header as u64 + 1))?;
     let mut scans: Vec<RawScan> = values
         .iter()
         .map(|value| {
@@ -132,18 +126,6 @@ fn read(text: &str, options: &ReadOptions) -> Result<Vec<RawScan>, Error> {
     Ok(scans)
 }
 
-/// The unit of the angles: radians, if their names in `VARS` do not say degrees.
-fn unit_of_angles(heads: &[Head], angles: &[usize]) -> Result<Angles, Error> {
-    let is = |unit: Unit| angles.iter().find(|&&place| heads[place].unit == Some(unit));
-    match (is(Unit::Deg), is(Unit::Rad)) {
-        (Some(&place), Some(_)) => Err(Error::new("some angles are in degrees and some in radians")
-            .at_column(place as u64 + 1)
-            .help("give all in one unit, and say so in VARS")),
-        (Some(_), None) => Ok(Angles::Deg),
-        (None, _) => Ok(Angles::Rad),
-    }
-}
-
 /// What a number of this kind says of the uncertainty.
 fn weight(kind: WeightKind, x: f64) -> Weight {
     match kind {
@@ -151,28 +133,6 @@ fn weight(kind: WeightKind, x: f64) -> Weight {
         WeightKind::RelativeSigma(coverage) => Weight::RelativeSigma(x / coverage),
         WeightKind::PercentSigma(coverage) => Weight::RelativeSigma(x / coverage / 100.0),
         WeightKind::Factor => Weight::Factor(x),
-    }
-}
-
-/// Names the azimuths where VARS forgets them and the rows have them: each stands behind its polar angle.
-///
-/// Instruments write such files; with one number more than names, and both azimuths without a name, nothing tells which it is.
-fn name_forgotten(names: &mut Vec<&str>, numbers: usize) {
-    let place = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&plain(name).as_str()));
-    let (phi_i, phi_s) = (place(&PHI_I), place(&PHI_S));
-    let forgotten = [(phi_s, place(&THETA_S), "phi_s"), (phi_i, place(&THETA_I), "phi_i")];
-    let mut forgotten: Vec<(usize, &str)> = forgotten
-        .into_iter()
-        .filter(|(phi, _, _)| phi.is_none())
-        .filter_map(|(_, theta, name)| Some((theta? + 1, name)))
-        .collect();
-    if numbers != names.len() + forgotten.len() {
-        return;
-    }
-    // From the back, so that the places before stay.
-    forgotten.sort();
-    for (place, name) in forgotten.into_iter().rev() {
-        names.insert(place, name);
     }
 }
 
@@ -204,7 +164,7 @@ fn check_count(text: &str, header: usize, rows: usize) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::units::Quantity;
+    use crate::input::units::{Angles, Quantity};
 
     fn read(text: &str) -> Result<Vec<RawScan>, Error> {
         super::read(text, &ReadOptions::default())

@@ -3,9 +3,11 @@
 mod axes;
 mod corner;
 mod incidence;
+mod names;
 mod side;
 
-use corner::{Axis, Corner};
+use corner::Corner;
+use names::Axis;
 use side::{Side, add_angle, angle};
 
 use crate::error::Error;

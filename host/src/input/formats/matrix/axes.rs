@@ -1,6 +1,6 @@
 //! What the two sides of a matrix are, by the corner and by their numbers.
 
-use super::corner::{Axis, Names};
+use super::names::{Axis, Names};
 use super::side::Side;
 use crate::error::Error;
 use crate::input::options::ReadOptions;

@@ -1,6 +1,6 @@
 //! What remarks and options say of the angle of incidence of a matrix, and of its sides.
 
-use super::corner::{self, Axis};
+use super::names::{self, Axis};
 use super::side::Side;
 use crate::error::Error;
 use crate::input::about::ThetaI;
@@ -67,7 +67,7 @@ pub fn refuse_sides(text: &str, [side, top]: [Axis; 2]) -> Result<(), Error> {
                 "column" | "col" | "firstrow" => top,
                 _ => continue,
             };
-            if corner::axis(role::role(&Head::new(value))).is_some_and(|said| said != axis) {
+            if names::axis(role::role(&Head::new(value))).is_some_and(|said| said != axis) {
                 return Err(
                     Error::new("a remark says what the rows and the columns are, and they are taken the other way round")
                         .at_line(line)

@@ -8,6 +8,8 @@ use brdfit::analysis::bootstrap::Noise;
 use brdfit::analysis::choose::Wanted;
 use brdfit::analysis::deviations::{Verdict, settled};
 use brdfit::analysis::fit::fit;
+use brdfit::analysis::joint;
+use brdfit::analysis::joint::weights::weighed;
 use brdfit::analysis::misfit::coverage_factor;
 use brdfit::analysis::profile::findings::{Asked, find};
 use brdfit::engine::{FitOptions, Material};
@@ -257,4 +259,97 @@ fn every_command_weighs_by_the_fitted_f() {
     for name in ["rho_d", "m"] {
         assert!(relative(&both["scans"][0]["parameters"][name], &alone["parameters"][name]) < 1e-6);
     }
+}
+
+/// A good and a noisy scan of one m, with their deviations, over 100 copies. m of both is as near to that of the good scan as its error says, and its stated error is smaller than that of either.
+///
+/// Measured: m is off by 0.110 % for the good scan alone, by 0.108 % for both, the root of the mean square of the pulls is 1.12, and the error is smaller than both in 98 copies; the deviations of the others are refuted, as they may be by chance.
+#[test]
+fn joint_scans_count_by_their_deviations() {
+    let mut options = FitOptions {
+        terms: DIFFUSE | SURFACE,
+        ..FitOptions::default()
+    };
+    (options.lower[4], options.upper[4]) = (1.5, 1.5);
+    let wanted = Wanted::One(options);
+    let shared: Vec<bool> = (0..6).map(|place| place == 3).collect();
+    let copies = 100;
+    let (mut alone, mut both, mut pulls, mut smaller) = (0.0, 0.0, 0.0, 0);
+    for copy in 0..copies {
+        let read = |relative: f64, copy: u64| {
+            let text = file(0.0, relative, "rel_sigma", copy);
+            let read = parse("scan.csv", text.as_bytes(), &ReadOptions::default());
+            settled(read.unwrap().remove(0), &wanted)
+        };
+        let (measurements, by) = weighed(vec![read(0.01, copy), read(0.1, 1000 + copy)]);
+        let each = measurements.iter().map(|one| fit(one, &wanted).unwrap());
+        let each = each.map(|scan| (scan.outcome.params[3], scan.outcome.uncertainty.stderr[3]));
+        let each: Vec<(f64, f64)> = each.collect();
+        let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
+        let found = joint::fit(&samples, &[(options, shared.clone())], by.stated()).unwrap();
+        let (m, error) = (
+            found.best().fitted.scans[0][3],
+            found.best().known.errors[0][3].expect("m is known"),
+        );
+        let square = |x: f64| x * x / f64::from(copies as u32);
+        alone += square(each[0].0 / TRUTH[3] - 1.0);
+        both += square(m / TRUTH[3] - 1.0);
+        pulls += square((m - TRUTH[3]) / error);
+        let judged = found.best().known.verdict == Some(Verdict::Used);
+        smaller += usize::from(judged && error < each[0].1 && error < each[1].1);
+        assert!((m - each[0].0).abs() < each[0].1, "{m} {each:?}");
+    }
+    let [alone, both, pulls] = [alone, both, pulls].map(f64::sqrt);
+    println!("m alone {alone:.5}, both {both:.5}, pulls {pulls:.3}, smaller errors in {smaller}");
+    assert!(both < 1.02 * alone, "{both} {alone}");
+    assert!((0.85..1.15).contains(&pulls), "{pulls}");
+    assert!(smaller > 95, "{smaller}");
+}
+
+#[test]
+fn joint_has_the_errors_of_the_files_as_fit_has() {
+    let folder = tempfile::tempdir().unwrap();
+    // The first file tells half of its noise, the third nothing of it.
+    let halved = |line: &str| match line.strip_suffix(",0.02") {
+        Some(rest) => format!("{rest},0.01\n"),
+        None => format!("{line}\n"),
+    };
+    let text: String = file(0.0, 0.02, "rel_sigma", 3).lines().map(halved).collect();
+    let plain: String = text
+        .lines()
+        .map(|line| line.rsplit_once(',').unwrap().0.to_string() + "\n")
+        .collect();
+    let [a, b, c] = [
+        program::write(&folder, "a.csv", text.clone()),
+        program::write(&folder, "b.csv", file(0.0, 0.1, "rel_sigma", 4)),
+        program::write(&folder, "c.csv", plain),
+    ];
+    let of = |files: [&str; 2], more: &[&str]| {
+        let terms = ["--terms", "diffuse,surface", "--fix", "n=1.5"];
+        json(&[&["joint", files[0], files[1]], &terms[..], more].concat())
+    };
+    let (usual, absolute) = (of([&a, &b], &[]), of([&a, &b], &["--absolute-sigma"]));
+    assert_eq!(
+        (&usual["deviations"], &absolute["deviations"]),
+        (&"refuted".into(), &"absolute".into())
+    );
+    assert_eq!(usual["scans_count"], "by standard deviations");
+    let ratio = (usual["chi2"].as_f64().unwrap() / usual["degrees_of_freedom"].as_f64().unwrap()).sqrt();
+    assert!((1.4..1.8).contains(&ratio), "{ratio}");
+    for (scan, name) in [(0, "m"), (0, "rho_d"), (1, "rho_s")] {
+        let stderr = |fit: &Value| fit["scans"][scan]["stderr"][name].as_f64().unwrap();
+        assert!(
+            (stderr(&usual) / stderr(&absolute) / ratio - 1.0).abs() < 1e-9,
+            "{name}"
+        );
+    }
+    let page = program::brdfit(&["joint", &a, &b, "--absolute-sigma"], b"").output;
+    assert!(page.contains("as asked; residuals are 1.6 times these"), "{page}");
+    // Where one file tells none all count alike, and that is said.
+    let page = program::brdfit(&["joint", &a, &c], b"").output;
+    assert!(
+        page.contains("1 of 2 scans have standard deviations, and the others none: all scans count alike"),
+        "{page}"
+    );
+    assert_eq!(of([&a, &c], &[])["scans_count"], "alike");
 }

@@ -3,7 +3,8 @@
 use super::angles::averaged;
 use super::{PLACE_M, PLACE_N, dielectric, grid, json, noisy, options};
 use brdfit::analysis::bootstrap::Noise;
-use brdfit::engine::{Material, Prior, joint};
+use brdfit::analysis::joint;
+use brdfit::engine::{Material, Prior};
 use brdfit::instrument::ENERGY;
 use brdfit_core::geometry::Sample;
 use brdfit_suite::program::{brdfit, fail, succeed, write};
@@ -29,16 +30,17 @@ fn joint_fits_take_part() {
         options.instrument.limit = Some(ENERGY);
     });
     let shared: Vec<bool> = (0..6).map(|place| place >= PLACE_M).collect();
-    let fitted = joint::fit(&[&a, &b], &shared, &wanted).unwrap();
+    let fits = joint::fit(&[&a, &b], &[(wanted, shared)], None).unwrap();
+    let (fitted, errors) = (&fits.best().fitted, &fits.best().known.errors);
     assert!(
         (fitted.scans[0][PLACE_M] / 0.02 - 1.0).abs() < 0.01,
         "{:?}",
         fitted.scans
     );
     // A prior of a shared parameter counts once.
-    let error = fitted.errors[0][PLACE_N].expect("n is known");
+    let error = errors[0][PLACE_N].expect("n is known");
     assert!((error / 0.01 - 1.0).abs() < 0.02, "{error}");
-    let rho_d = fitted.errors[0][0].expect("rho_d is known") / fitted.scans[0][0];
+    let rho_d = errors[0][0].expect("rho_d is known") / fitted.scans[0][0];
     assert!((0.03..0.04).contains(&rho_d), "{rho_d}");
 }
 
@@ -110,6 +112,88 @@ fn fit_and_batch_honour_all() {
         lines.next()?.split(',').nth(place)?.parse::<f64>().ok()
     };
     assert_eq!(cell("offset_deg"), fit["offset_deg"].as_f64());
+}
+
+/// A table of a scan at 30 and 50 degrees whose instrument reads `off` too much: theta_i and theta_s have these signs at each of the two.
+fn misread(folder: &TempDir, name: &str, signs: [[f64; 2]; 2], off: f64) -> String {
+    let material = Material::paper([0.05, 3.0, 0.0, 0.1, 1.5, 0.0]);
+    let mut table = "theta_i_deg,theta_s_deg,brdf_per_sr\n".to_string();
+    for (theta_i, [sign_i, sign_s]) in [30.0f64, 50.0].into_iter().zip(signs) {
+        for k in -35..=35 {
+            let theta_s = 2.0 * f64::from(k);
+            let sample = Sample::in_plane(theta_i.to_radians(), theta_s.to_radians(), 1.0);
+            let noise = 0.01 * Noise::new(3, (k + 100 + theta_i as i32 * 1000) as u64).normal();
+            let f = (material.ln_f(&sample).unwrap() + noise).exp();
+            table += &format!("{},{},{f}\n", sign_i * theta_i, sign_s * theta_s + off);
+        }
+    }
+    write(folder, name, table)
+}
+
+#[test]
+fn an_offset_is_that_of_theta_s_in_the_file() {
+    let folder = TempDir::new().unwrap();
+    let fixed = ["--terms", "diffuse,surface", "--fix", "n=1.5", "--fit-offset"];
+    let usual = misread(&folder, "usual.csv", [[1.0, 1.0]; 2], 2.0);
+    let forward_negative = misread(&folder, "negative.csv", [[1.0, -1.0]; 2], 2.0);
+    let negative_theta_i = misread(&folder, "turned.csv", [[-1.0, -1.0]; 2], 2.0);
+    for (file, more) in [
+        (&usual, &[][..]),
+        (&forward_negative, &["--forward", "negative"]),
+        (&negative_theta_i, &[]),
+    ] {
+        let arguments = [&["fit", file.as_str()], &fixed[..], more].concat();
+        let page = succeed(&arguments);
+        assert!(page.contains("deg too much") && !page.contains("too little"), "{page}");
+        let fit = json(&arguments);
+        assert!((fit["offset_deg"].as_f64().unwrap() - 2.0).abs() < 0.05, "{fit}");
+        let csv = succeed(&[&arguments[..], &["--format", "csv"]].concat());
+        let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let place = lines
+            .next()
+            .unwrap()
+            .iter()
+            .position(|&head| head == "offset_deg")
+            .unwrap();
+        let cell: f64 = lines.next().unwrap()[place].parse().unwrap();
+        assert_eq!(Some(cell), fit["offset_deg"].as_f64());
+    }
+    // One axis that is off cannot be so in both senses.
+    let both = misread(&folder, "both.csv", [[1.0, 1.0], [-1.0, -1.0]], 2.0);
+    let said = fail(&[&["fit", both.as_str()], &fixed[..]].concat());
+    assert!(said.contains("one offset cannot be both"), "{said}");
+    succeed(&["fit", &both, "--terms", "diffuse,surface"]);
+}
+
+/// At one angle of incidence the shape of a wide lobe and an offset stand for each other along a curve of fits that are as good: the fit of this scan is at an offset of -1.6 degrees, where the instrument reads 2 too much.
+#[test]
+fn an_offset_at_one_angle_of_incidence_is_not_told_by_a_wide_lobe() {
+    let folder = TempDir::new().unwrap();
+    let of = |m: f64, n: f64, rho_s: f64, copy: u64| {
+        let material = Material::paper([0.1, rho_s, 0.0, m, n, 0.0]);
+        let mut table = "theta_i_deg,theta_s_deg,brdf_per_sr\n".to_string();
+        for k in -35..=35 {
+            let theta_s = 2.0 * f64::from(k);
+            let sample = Sample::in_plane(40f64.to_radians(), theta_s.to_radians(), 1.0);
+            let noise = 0.01 * Noise::new(copy, (k + 100) as u64).normal();
+            table += &format!(
+                "40,{},{}\n",
+                theta_s + 2.0,
+                (material.ln_f(&sample).unwrap() + noise).exp()
+            );
+        }
+        json(&["fit", &write(&folder, "one.csv", table), "--fit-offset"])
+    };
+    let mut told = 0;
+    for copy in 0..4 {
+        let fit = of(0.3, 1.98, 3.0, copy);
+        if let Some(offset) = fit["offset_deg"].as_f64() {
+            let error = fit["offset_stderr_deg"].as_f64().unwrap();
+            assert!((offset - 2.0).abs() < 3.0 * error, "{offset} +- {error}");
+            told += usize::from(error < 0.5);
+        }
+    }
+    assert_eq!(told, 0);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use brdfit_core::uncertainty::{self as core, Axes, Place};
 
 use crate::layout::Layout;
 pub use crate::material::NEAR_ZERO;
-use crate::options::FitOptions;
+use crate::options::{FitOptions, Precision};
 use crate::passes::Kernel;
 use crate::values::Values;
 
@@ -37,6 +37,8 @@ pub struct Misfit {
 pub struct Uncertainty {
     /// Standard deviation of a residual of ln f; infinite without degrees of freedom.
     pub scale: f64,
+    /// Residuals that are smaller than this are rounding: 1e-10, or 1e-5 of a fit in `f32`.
+    pub rounding: f64,
     /// Samples less parameters inside their bounds.
     pub degrees_of_freedom: usize,
     /// Those that the standard errors have, for Student's t: the same for independent residuals, fewer for correlated ones.
@@ -146,6 +148,14 @@ fn size(numbers: impl Iterator<Item = f64>) -> i32 {
     if size.abs() > ORDINARY { size } else { 0 }
 }
 
+/// Residuals of ln f that are smaller than this are rounding.
+pub const fn rounding(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-10,
+        Precision::F32 => 1e-5,
+    }
+}
+
 /// Of the optimum `x` of a scan of `samples` rows, within `bounds`; one pass.
 pub(crate) fn at<const P: usize>(
     scene: &Kernel<f64, P>,
@@ -198,6 +208,7 @@ pub(crate) fn at<const P: usize>(
     }
     let of_axes = Uncertainty {
         scale: known.scale,
+        rounding: rounding(options.precision),
         degrees_of_freedom: known.degrees_of_freedom,
         effective: known.degrees_of_freedom as f64,
         misfit: None,

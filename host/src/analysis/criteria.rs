@@ -7,7 +7,7 @@ use brdfit_core::real::Real;
 
 use super::chance::above_f;
 use super::misfit::Inflation;
-use crate::engine::Precision;
+use crate::engine::{Precision, uncertainty};
 
 /// How well a fit does, and what it takes.
 ///
@@ -84,9 +84,6 @@ impl Criteria {
 
 /// A mean square below this is rounding, of which no criterion may make anything.
 fn rounding(precision: Precision) -> f64 {
-    let residual = match precision {
-        Precision::F64 => 1e-10,
-        Precision::F32 => 1e-5,
-    };
+    let residual = uncertainty::rounding(precision);
     residual * residual
 }

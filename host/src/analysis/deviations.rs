@@ -30,6 +30,20 @@ pub enum Verdict {
     Refuted(f64),
     /// Errors are theirs because that was asked for; residuals are so many times what they should be.
     Absolute(f64),
+    /// Residuals are rounding, which tells nothing of them, and has no errors.
+    Exact,
+}
+
+impl Verdict {
+    /// Its name in tables and JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Used => "used",
+            Verdict::Refuted(_) => "refuted",
+            Verdict::Absolute(_) => "absolute",
+            Verdict::Exact => "exact",
+        }
+    }
 }
 
 /// The scan with weights from its standard deviations over the f of its fit, and with values raised by what their noise takes from ln f on average.
@@ -160,6 +174,33 @@ impl Stated {
             absolute: measurement.on_deviations.absolute,
         })
     }
+
+    /// What residuals of a standard deviation of `scale`, of which less than `rounding` is rounding, make of it; none where they are surely `correlated`, or have no degrees of freedom.
+    ///
+    /// Correlated residuals are no noise, and say themselves how large errors are, unless these are to be absolute.
+    pub fn verdict(
+        self,
+        (scale, rounding): (f64, f64),
+        degrees_of_freedom: usize,
+        correlated: bool,
+    ) -> Option<Verdict> {
+        let (degrees, ratio) = (degrees_of_freedom as f64, scale / self.sigma);
+        // Errors of the deviations are those of the residuals, scaled, which nothing gives where they are 0.
+        if self.absolute && scale.is_finite() && scale > 0.0 {
+            return Some(Verdict::Absolute(ratio));
+        }
+        if degrees_of_freedom == 0 || correlated {
+            return None;
+        }
+        if scale < rounding {
+            return Some(Verdict::Exact);
+        }
+        let below = below_chi2(ratio * ratio * degrees, degrees);
+        if 2.0 * below.min(1.0 - below) < REFUTED {
+            return Some(Verdict::Refuted(ratio));
+        }
+        Some(Verdict::Used)
+    }
 }
 
 /// The uncertainty of a fit of these samples: with the correlation of its residuals ([`misfit::uncertainty`]), or of the standard deviations that the file states; and what became of these.
@@ -171,33 +212,21 @@ pub fn uncertainty(
     let Some(Stated { sigma, absolute }) = stated else {
         return (misfit::uncertainty(samples, outcome), None);
     };
-    let corrected = misfit::surely(samples, outcome);
-    judged(&corrected, &outcome.uncertainty, sigma, absolute)
-}
-
-/// The errors that the standard deviations give, or why not; a weight of 1 stands for `sigma`, and `independent` is without the correlation of residuals.
-///
-/// Correlated residuals are no noise, and say themselves how large errors are, unless `absolute`.
-fn judged(
-    known: &Uncertainty,
-    independent: &Uncertainty,
-    sigma: f64,
-    absolute: bool,
-) -> (Uncertainty, Option<Verdict>) {
-    let degrees = known.degrees_of_freedom as f64;
-    if absolute && independent.scale.is_finite() && independent.scale > 0.0 {
-        let ratio = independent.scale / sigma;
-        return (scaled(independent, ratio), Some(Verdict::Absolute(ratio)));
-    }
-    if known.misfit.is_some() || known.degrees_of_freedom == 0 {
-        return (known.clone(), None);
-    }
+    let stated = Stated { sigma, absolute };
+    let independent = &outcome.uncertainty;
+    let known = misfit::surely(samples, outcome);
+    let verdict = stated.verdict(
+        (known.scale, known.rounding),
+        known.degrees_of_freedom,
+        known.misfit.is_some(),
+    );
     let ratio = known.scale / sigma;
-    let below = below_chi2(ratio * ratio * degrees, degrees);
-    if 2.0 * below.min(1.0 - below) < REFUTED {
-        return (known.clone(), Some(Verdict::Refuted(ratio)));
-    }
-    (scaled(known, ratio), Some(Verdict::Used))
+    let errors = match verdict {
+        Some(Verdict::Absolute(_)) => scaled(independent, ratio),
+        Some(Verdict::Used) => scaled(&known, ratio),
+        Some(Verdict::Refuted(_) | Verdict::Exact) | None => known,
+    };
+    (errors, verdict)
 }
 
 /// The errors of residuals, which are `ratio` times their standard deviations, as those of the standard deviations.

@@ -1,18 +1,19 @@
 //! Several scans fitted together, with the model and terms that they support.
 
 mod correlated;
+mod errors;
+pub mod weights;
 
 use brdfit_core::geometry::Sample;
-use brdfit_core::real::Real;
 use rayon::prelude::*;
 
 use super::criteria::Criteria;
+use super::deviations::Stated;
 use super::misfit::Inflation;
-use super::unseen;
 use crate::engine::joint::{self, JointFit};
-use crate::engine::uncertainty::Misfit;
 use crate::engine::{FitError, FitOptions, Precision};
 use correlated::Linear;
+pub use errors::Known;
 
 /// One candidate, fitted to all scans.
 #[derive(Clone, Debug)]
@@ -20,12 +21,12 @@ use correlated::Linear;
 pub struct Candidate {
     /// How it was fitted.
     pub options: FitOptions,
-    /// Its fit; the errors are those of correlated residuals where they are.
+    /// Its fit.
     pub fitted: JointFit,
     /// What it is judged by.
     pub criteria: Criteria,
-    /// How the residuals of all scans are correlated along the angle; `None` where independence is not refuted.
-    pub misfit: Option<Misfit>,
+    /// What is known of its parameters.
+    pub known: Known,
 }
 
 /// Fits of several scans by several candidates.
@@ -47,11 +48,15 @@ impl Fits {
     }
 }
 
-/// Fits every candidate, of which there is one at least; each comes with which of its parameters are the same in all scans.
+/// Fits every candidate, of which there is one at least; each comes with which of its parameters are the same in all scans; `stated` is what the files state of standard deviations, if all do ([`weights::weighed`]).
 ///
 /// # Errors
 /// The place of the scan that cannot be fitted, and why.
-pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> Result<Fits, (usize, FitError)> {
+pub fn fit(
+    scans: &[&[Sample<f64>]],
+    candidates: &[(FitOptions, Vec<bool>)],
+    stated: Option<Stated>,
+) -> Result<Fits, (usize, FitError)> {
     let one = |(options, shared): &(FitOptions, Vec<bool>)| {
         let fitted = joint::fit(scans, shared, options)?;
         let linear = Linear::of(scans, options, &fitted);
@@ -60,7 +65,7 @@ pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> 
     let fitted: Result<Vec<_>, _> = candidates.par_iter().map(one).collect();
     let fitted = fitted?;
     let inflation = inflation_of_best(&fitted);
-    let judged = fitted.into_iter().map(|(options, mut fitted, linear)| {
+    let judged = fitted.into_iter().map(|(options, fitted, linear)| {
         // A joint fit is in double whatever the options say.
         let criteria = Criteria::new(
             fitted.samples,
@@ -69,12 +74,11 @@ pub fn fit(scans: &[&[Sample<f64>]], candidates: &[(FitOptions, Vec<bool>)]) -> 
             fitted.cost,
             Precision::F64,
         );
-        let misfit = with_errors(&options, &mut fitted, linear);
         Candidate {
+            known: Known::of(&options, &fitted, linear.as_ref(), stated),
             options,
             fitted,
             criteria,
-            misfit,
         }
     });
     let candidates: Vec<Candidate> = judged.collect();
@@ -93,35 +97,4 @@ type Fitted = (FitOptions, JointFit, Option<Linear>);
 fn inflation_of_best(fitted: &[Fitted]) -> Option<Inflation> {
     let linear = fitted.iter().filter_map(|(_, _, linear)| linear.as_ref());
     linear.min_by(|a, b| a.scale.total_cmp(&b.scale))?.inflation()
-}
-
-/// Puts what correlation makes of the errors in their place; none are left where the fit is exact, and of what is undetermined.
-fn with_errors(options: &FitOptions, fitted: &mut JointFit, linear: Option<Linear>) -> Option<Misfit> {
-    let degrees = fitted.samples as f64 - fitted.parameters as f64;
-    if unseen::exact(Real::sqrt(fitted.cost / degrees.max(1.0))) {
-        fitted.errors.iter_mut().flatten().for_each(|error| *error = None);
-        return None;
-    }
-    let (misfit, factors) = linear?.factors(fitted)?;
-    let parameters = options.model.parameters;
-    for (scan, factors) in factors.iter().enumerate() {
-        for (place, factor) in factors.iter().enumerate() {
-            let Some(error) = fitted.errors[scan][place] else {
-                continue;
-            };
-            let value = fitted.scans[scan][place];
-            let of_scale = match parameters[place].is_weight() {
-                true => options.instrument.scale_uncertainty * value,
-                false => 0.0,
-            };
-            let own = Real::sqrt((error * error - of_scale * of_scale).max(0.0)) * factor;
-            let size = if parameters[place].is_squared() {
-                value.max(1.0)
-            } else {
-                value
-            };
-            fitted.errors[scan][place] = (own <= size).then(|| libm::hypot(own, of_scale));
-        }
-    }
-    Some(misfit)
 }

@@ -1,5 +1,6 @@
 //! What is not determined, and through what it still is.
 
+use brdfit_core::model::Parameter;
 use brdfit_core::uncertainty::Place;
 
 use super::derived::{Derived, Value};
@@ -28,16 +29,19 @@ pub fn open(material: &Material, known: &Uncertainty) -> impl Iterator<Item = &'
         None | Some(Place::Fixed) => false,
         // A weight that no sample sees is said to be that, and stays out of all else.
         Some(Place::Unseen) => !parameters[index].is_weight(),
-        Some(_) => {
-            let size = if parameters[index].name == "kappa" {
-                values[index].max(1.0)
-            } else {
-                values[index]
-            };
-            size > 0.0 && known.stderr_lifted[index] > LOOSE * size
-        }
+        Some(_) => is_open(&parameters[index], values[index], known.stderr_lifted[index]),
     };
     (0..values.len()).filter(open).map(move |index| parameters[index].name)
+}
+
+/// Is a parameter of this value open, with this standard error where no other parameter is held by a bound?
+pub fn is_open(parameter: &Parameter, value: f64, stderr_lifted: f64) -> bool {
+    let size = if parameter.name == "kappa" {
+        value.max(1.0)
+    } else {
+        value
+    };
+    size > 0.0 && stderr_lifted > LOOSE * size
 }
 
 /// What `known` leaves open.

@@ -8,8 +8,6 @@ use crate::engine::{FitOptions, Outcome, Values};
 
 /// A lobe whose part of f is below this at every sample changes no digit of the cost that counts.
 const SHARE: f64 = 1e-6;
-/// Residuals of this size are rounding.
-const EXACT: f64 = 1e-10;
 
 /// The fit with the weights of lobes that no sample sees at their lower bounds: of fits that cost the same, the one with the smaller weights.
 ///
@@ -64,17 +62,12 @@ pub fn names(outcome: &Outcome) -> Vec<&'static str> {
 
 /// Why a fit knows none of its errors: it leaves no residuals, so that nothing tells of noise.
 pub fn is_exact(known: &Uncertainty) -> bool {
-    known.degrees_of_freedom > 0 && exact(known.scale)
+    known.degrees_of_freedom > 0 && known.scale < known.rounding
 }
 
 /// Has nothing a standard error, since the fit is exact and no standard deviations of the file are taken for them?
 pub fn without_errors(known: &Uncertainty) -> bool {
     is_exact(known) && known.effective.is_finite()
-}
-
-/// Is a standard deviation of residuals of ln f but rounding?
-pub fn exact(scale: f64) -> bool {
-    scale < EXACT
 }
 
 /// Without any certainty if the fit is exact.

@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
-use crate::analysis::deviations;
+use crate::analysis::deviations::{self, Verdict};
 use crate::analysis::fit::{FittedScan, Told, fit, fit_telling};
+use crate::analysis::joint::weights::{self, By};
 use crate::analysis::joint::{self, Candidate, Fits};
 use crate::analysis::repeats::quantities;
 use crate::document;
@@ -93,16 +94,17 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     if arguments.search.robust {
         measurements = without_outliers(measurements, &wanted, &pool)?;
     }
+    let (measurements, by) = weights::weighed(measurements);
     let samples: Vec<&[Sample<f64>]> = measurements.iter().map(|one| &one.samples[..]).collect();
     let fits = pool
-        .install(|| joint::fit(&samples, &candidates))
+        .install(|| joint::fit(&samples, &candidates, by.stated()))
         .map_err(|(place, error)| match measurements.get(place) {
             Some(measurement) => input::explain(measurement, error),
             None => Error::new(format!("all scans together: {error}")).help("share more parameters, or --fix some"),
         })?;
     let text = match arguments.output.format {
-        JointFormat::Text => text(&fits, &measurements),
-        JointFormat::Json => json(&fits, &measurements),
+        JointFormat::Text => text(&fits, &measurements, by),
+        JointFormat::Json => json(&fits, &measurements, by),
         JointFormat::Html => return Err(no_page()),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
@@ -232,19 +234,20 @@ fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
     Ok(shared)
 }
 
-fn text(fits: &Fits, measurements: &[Measurement]) -> String {
+fn text(fits: &Fits, measurements: &[Measurement], by: By) -> String {
     let Candidate {
-        options,
-        fitted,
-        misfit,
-        ..
+        options, fitted, known, ..
     } = fits.best();
     let name = |k: usize| options.model.parameters[k].name;
     let present = |shared: bool| options.present().filter(move |&k| fitted.shared[k] == shared);
     let names: Vec<&str> = present(true).map(name).collect();
-    let value = |scan: usize, k: usize| match fitted.errors[scan][k] {
-        Some(error) => format!("{} ± {}", four(fitted.scans[scan][k]), two(error)),
-        None => four(fitted.scans[scan][k]),
+    let value = |scan: usize, k: usize| {
+        let value = four(fitted.scans[scan][k]);
+        match known.errors[scan][k] {
+            Some(error) => format!("{value} ± {}", two(error)),
+            None if known.open[scan][k] => format!("{value} ({})", words::NOT_DETERMINED),
+            None => value,
+        }
     };
     let mut lines = vec![format!(
         "{} scans, {} samples, {} parameters; shared: {}",
@@ -269,14 +272,37 @@ fn text(fits: &Fits, measurements: &[Measurement]) -> String {
         rms(fitted.of_samples),
         rms(fitted.separate)
     ));
-    lines.push("  ± is one standard error; none where a parameter is on a bound, or undetermined: its error is larger than itself.".to_string());
-    if let Some(misfit) = misfit {
+    lines.extend(counted(by, measurements.len()).map(|line| format!("  {line}")));
+    if let Some(chi2) = known.chi2 {
+        let verdict = known.verdict.map_or_else(String::new, words::deviations);
+        let degrees = fitted.degrees_of_freedom;
+        lines.push(format!(
+            "  chi^2 {} of {degrees} degrees of freedom{verdict}",
+            four(chi2)
+        ));
+    }
+    lines.push(match known.exact {
+        true => format!("  {}", words::EXACT),
+        false => "  ± is one standard error; none where a parameter is on a bound, or not determined.".to_string(),
+    });
+    if let Some(misfit) = &known.misfit {
         lines.push(format!("  {}", words::correlated(misfit)));
     }
     if fits.candidates.len() > 1 {
         lines.extend(table(fits));
     }
     lines.join("\n") + "\n"
+}
+
+/// By what the scans count, where files state standard deviations.
+fn counted(by: By, scans: usize) -> Option<String> {
+    match by {
+        By::Alike => None,
+        By::Deviations(_) => Some("scans count by the standard deviations of their files".into()),
+        By::Some(stated) => Some(format!(
+            "{stated} of {scans} scans have standard deviations, and the others none: all scans count alike, and errors are those of the residuals"
+        )),
+    }
 }
 
 /// What the best was chosen from.
@@ -305,9 +331,13 @@ fn table(fits: &Fits) -> Vec<String> {
     lines
 }
 
-fn json(fits: &Fits, measurements: &[Measurement]) -> String {
+fn json(fits: &Fits, measurements: &[Measurement], by: By) -> String {
     let best = fits.best();
-    let (model, fitted) = (best.options.model, &best.fitted);
+    let (model, fitted, known) = (best.options.model, &best.fitted, &best.known);
+    let open = |scan: usize, shared: bool| -> Vec<&str> {
+        let places = (0..fitted.shared.len()).filter(|&k| fitted.shared[k] == shared && known.open[scan][k]);
+        places.map(|k| model.parameters[k].name).collect()
+    };
     let shared: Vec<&str> = (0..fitted.shared.len())
         .filter(|&k| fitted.shared[k])
         .map(|k| model.parameters[k].name)
@@ -320,7 +350,8 @@ fn json(fits: &Fits, measurements: &[Measurement]) -> String {
                 "scan": measurement.label(),
                 "left_out": measurement.left_out,
                 "parameters": ByName::new(model, |k| fitted.scans[scan][k]),
-                "stderr": ByName::new(model, |k| fitted.errors[scan][k]),
+                "stderr": ByName::new(model, |k| known.errors[scan][k]),
+                "undetermined": open(scan, false),
                 "provenance": of_input(&measurement.about, Some(&best.options)),
             })
         })
@@ -345,7 +376,16 @@ fn json(fits: &Fits, measurements: &[Measurement]) -> String {
         "samples": fitted.samples,
         "cost": fitted.cost,
         "cost_separate": fitted.separate,
-        "correlated": best.misfit.as_ref().map(Correlated::from),
+        "correlated": known.misfit.as_ref().map(Correlated::from),
+        "scans_count": match by {
+            By::Deviations(_) => "by standard deviations",
+            By::Alike | By::Some(_) => "alike",
+        },
+        "chi2": known.chi2,
+        "degrees_of_freedom": fitted.degrees_of_freedom,
+        "deviations": known.verdict.map(Verdict::name),
+        "exact": known.exact,
+        "undetermined": open(0, true),
         "scans": scans,
     });
     document::json(&value)

@@ -7,7 +7,6 @@ use brdfit_core::uncertainty::Place;
 
 use super::cell::{Cell, Kind};
 use crate::analysis::derived::conserve_energy;
-use crate::analysis::deviations::Verdict;
 use crate::analysis::fit::FittedScan;
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::open;
@@ -343,13 +342,9 @@ fn of_scan() -> Vec<Column> {
         ),
         text(
             "deviations",
-            "what became of the standard deviations of the file: used for errors, refuted by chi2, or absolute, as asked",
+            "what became of the standard deviations of the file: used for errors, refuted by chi2, absolute, as asked, or exact: residuals are rounding",
             Found,
-            |row| match row.scan?.deviations? {
-                Verdict::Used => Some("used".into()),
-                Verdict::Refuted(_) => Some("refuted".into()),
-                Verdict::Absolute(_) => Some("absolute".into()),
-            },
+            |row| Some(row.scan?.deviations?.name().into()),
         ),
         whole("left_out", "rows of the scan that were left out", Otherwise, |row| {
             Some(row.scan?.left_out.iter().map(|one| one.samples as u64).sum())

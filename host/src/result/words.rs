@@ -50,6 +50,7 @@ pub fn deviations(verdict: Verdict) -> String {
             ": errors are those of the file's standard deviations, as asked; residuals are {} times these",
             two(ratio)
         ),
+        Verdict::Exact => ": the residuals are rounding, which tells nothing of the file's standard deviations".into(),
         Verdict::Refuted(ratio) => format!(
             ": that refutes the file's standard deviations, and errors are {} times theirs",
             two(ratio)

@@ -4,12 +4,13 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::joint::Joint;
 use brdfit_core::lm::{self, Bounds, Fit, Options, Problem};
 use brdfit_core::model::Parameter;
+use brdfit_core::real::Real;
 use brdfit_core::search::{Found, SETTLING, search, search_from};
 use brdfit_core::uncertainty::Uncertainty;
 
 use super::beside::{Beside, Rows, is_above};
 use super::setup::Setup;
-use super::{calibration, single};
+use super::single;
 use crate::error::FitError;
 use crate::layout::Layout;
 use crate::options::FitOptions;
@@ -29,8 +30,14 @@ pub struct JointFit {
     pub shared: Vec<bool>,
     /// The parameters of each scan.
     pub scans: Vec<Values>,
-    /// Their standard errors (none on a bound, or if undetermined: the error is larger than the parameter, or for kappa than 1).
+    /// Their standard errors by the residuals, without the calibration; none of what is held or on a bound.
     pub errors: Vec<Vec<Option<f64>>>,
+    /// The same as if no bound held another parameter, linear in kappa^2: what is known only because another parameter is on its bound is not known here; none of what is held.
+    pub lifted: Vec<Vec<Option<f64>>>,
+    /// Standard deviation of a residual; infinite without degrees of freedom.
+    pub scale: f64,
+    /// Samples and priors less parameters inside their bounds.
+    pub degrees_of_freedom: usize,
     /// Sum of squared residuals of ln f over all scans, and of priors.
     pub cost: f64,
     /// The part of it that is that of the samples.
@@ -121,30 +128,33 @@ pub fn run<const P: usize>(
         let place = problem.place(s, k);
         let value = best.x[place];
         let free = bounds.lower[place] < value && value < bounds.upper[place];
-        let x = problem.of(&best.x, s);
-        let error = uncertainty.held.standard_error(place) * layout.slopes(&x)[k];
-        let value = layout.values(&x)[layout.places[k]];
-        // kappa may be 0 where it is determined.
-        let size = if own[k].is_squared() { value.max(1.0) } else { value };
-        let of_scale = if own[k].is_weight() {
-            options.instrument.scale_uncertainty * value
-        } else {
-            0.0
-        };
-        (free && error <= size).then_some(calibration::beside(error, of_scale))
+        let slope = layout.slopes(&problem.of(&best.x, s))[k];
+        free.then(|| uncertainty.held.standard_error(place) * slope)
     };
-    let errors = |s: usize| {
-        let places = 0..options.model.parameters.len();
-        places
-            .map(|place| layout.coordinate(place).and_then(|k| error(s, k)))
-            .collect()
+    let lifted = |s: usize, k: usize| {
+        let place = problem.place(s, k);
+        let error = uncertainty.lifted.standard_error(place);
+        // Of kappa^2 = 0 +- error the upper end says how large kappa can be.
+        let error = match own[k].is_squared() && best.x[place] == 0.0 {
+            true => Real::sqrt(error),
+            false => error * layout.slopes(&problem.of(&best.x, s))[k],
+        };
+        (bounds.lower[place] < bounds.upper[place]).then_some(error)
+    };
+    let each = |of: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
+        let one = |s: usize, place: usize| layout.coordinate(place).and_then(|k| of(s, k));
+        let of_scan = |s: usize| (0..options.model.parameters.len()).map(|place| one(s, place)).collect();
+        (0..scans.len()).map(of_scan).collect()
     };
     Ok(JointFit {
         shared: shared.to_vec(),
         scans: (0..scans.len())
             .map(|s| layout.values(&problem.of(&best.x, s)))
             .collect(),
-        errors: (0..scans.len()).map(errors).collect(),
+        errors: each(&error),
+        lifted: each(&lifted),
+        scale: uncertainty.scale,
+        degrees_of_freedom: uncertainty.degrees_of_freedom,
         cost: at.cost,
         of_samples: at.cost - priors,
         separate: found.separate,

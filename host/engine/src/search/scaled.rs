@@ -117,15 +117,18 @@ impl Scale {
 
     /// A joint fit, in the unit of the scans.
     pub fn joint(self, parameters: &[Parameter], fitted: JointFit) -> JointFit {
-        let errors = fitted.errors.iter().map(|errors| {
-            let each = errors.iter().enumerate();
+        let given = |all: &[Vec<Option<f64>>]| -> Vec<Vec<Option<f64>>> {
             let one = |(place, error): (usize, &Option<f64>)| {
                 error.map(|error| libm::ldexp(error, self.exponent(parameters, place)))
             };
-            each.map(one).collect()
-        });
+            all.iter()
+                .map(|of_scan| of_scan.iter().enumerate().map(one).collect())
+                .collect()
+        };
         JointFit {
-            errors: errors.collect(),
+            errors: given(&fitted.errors),
+            lifted: given(&fitted.lifted),
+            scale: self.residual(fitted.scale),
             scans: fitted
                 .scans
                 .iter()

@@ -6,11 +6,10 @@ use brdfit_core::real::Real;
 use crate::analysis::misfit::nodes;
 use crate::analysis::misfit::process::Residuals;
 use crate::analysis::misfit::rows::Rows;
-use crate::analysis::misfit::{EVIDENCE, Inflation, Mean};
-use crate::analysis::unseen;
+use crate::analysis::misfit::{Inflation, Mean};
 use crate::engine::joint::JointFit;
-use crate::engine::uncertainty::Misfit;
-use crate::engine::{FitOptions, Values};
+use crate::engine::uncertainty::{Misfit, rounding};
+use crate::engine::{FitOptions, Precision, Values};
 
 /// A column of J that is so nearly a sum of others is none.
 const ALIKE: f64 = 1e-6;
@@ -47,7 +46,7 @@ impl Linear {
         }
         let degrees_of_freedom = fitted.samples.checked_sub(owners.len()).filter(|&left| left >= 4)?;
         let scale = Real::sqrt(fitted.cost / degrees_of_freedom as f64);
-        if unseen::exact(scale) || owners.is_empty() {
+        if scale < rounding(Precision::F64) || owners.is_empty() {
             return None;
         }
         let mut all = Residuals {
@@ -89,9 +88,9 @@ impl Linear {
         Inflation::of(&self.all, self.degrees_of_freedom)
     }
 
-    /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted.
-    pub fn factors(&self, fitted: &JointFit) -> Option<(Misfit, Vec<Vec<f64>>)> {
-        let nodes = nodes::nodes(&self.all, self.degrees_of_freedom, EVIDENCE)?;
+    /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted with so much evidence.
+    pub fn factors(&self, fitted: &JointFit, evidence: f64) -> Option<(Misfit, Vec<Vec<f64>>)> {
+        let nodes = nodes::nodes(&self.all, self.degrees_of_freedom, evidence)?;
         let mean = Mean::of(&nodes, self.degrees_of_freedom);
         let factors: Vec<f64> = (0..self.owners.len())
             .map(|k| self.factor(k, &mean.covariance))

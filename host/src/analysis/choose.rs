@@ -10,6 +10,9 @@ use super::criteria::{Criteria, counted};
 use super::misfit::{self, Inflation};
 use crate::engine::robust::{self, Robust};
 use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
+use crate::error::Error;
+use crate::input::Measurement;
+use crate::input::about::Counts;
 
 /// The compiled sets with a diffuse term, in order of size, each with the one that it is tested against.
 pub const SETS: [(u8, Option<u8>); 5] = {
@@ -51,6 +54,21 @@ pub enum Wanted {
     One(FitOptions),
     /// The best of these, at least one, which differ in model, terms and bounds alone.
     Best(Vec<FitOptions>),
+}
+
+/// Refuses an offset of theta_s where that counts from one side in some rows and from the other in the rest: an axis that is off in one sense is off in the other sense there.
+///
+/// # Errors
+/// An offset is wanted of such a scan.
+pub fn refuse_two_senses(measurement: &Measurement, wanted: &Wanted) -> Result<(), Error> {
+    let offset = |options: &FitOptions| options.instrument.offsets.is_some();
+    if measurement.about.counts != Counts::Both || !wanted.candidates().iter().any(offset) {
+        return Ok(());
+    }
+    let what = "theta_s counts from the one side in some rows and from the other in the rest, as where theta_i has both signs: one offset cannot be both";
+    Err(Error::new(what)
+        .in_file(measurement.label())
+        .help("fit each side alone with --fit-offset, or leave that out"))
 }
 
 impl Wanted {

@@ -256,6 +256,7 @@ pub fn fit(measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Err
 /// # Errors
 /// As [`fit`].
 pub fn fit_telling(told: Told, measurement: &Measurement, wanted: &Wanted) -> Result<FittedScan, Error> {
+    choose::refuse_two_senses(measurement, wanted)?;
     let begun = Stopwatch::start();
     let found = choose::fit(&measurement.samples, wanted);
     let elapsed = begun.elapsed();

@@ -33,6 +33,8 @@ pub struct About {
     pub angles_named: bool,
     /// What the values are divided by before they are what their name says: 100 for percent.
     pub divisor: f64,
+    /// How theta_s of the file counts.
+    pub counts: Counts,
     /// The standard deviation of ln f that a weight of 1 stands for, if the file gives it beside weights.
     pub sigma_ln: Option<f64>,
     /// The first cell that is no number, where the file has such.
@@ -66,12 +68,35 @@ impl Default for About {
             settled: false,
             angles_named: true,
             divisor: 1.0,
+            counts: Counts::Forward,
             sigma_ln: None,
             missing: None,
             notes: Vec::new(),
             doubts: Vec::new(),
             sources: Arc::default(),
             asked: Arc::default(),
+        }
+    }
+}
+
+/// Which side of the surface normal is positive in theta_s of a file; in samples the forward one is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Counts {
+    /// The forward one; so do angles from the normal with an azimuth, which have no sign.
+    #[default]
+    Forward,
+    /// That of the source, at negative theta_i or where forward is negative: samples are mirrored.
+    Backward,
+    /// One in some rows and the other in others, as where theta_i has both signs.
+    Both,
+}
+
+impl Counts {
+    /// An angle that was fitted beside theta_s of the samples, as one beside theta_s of the file.
+    pub fn of_file(self, angle: f64) -> f64 {
+        match self {
+            Counts::Forward | Counts::Both => angle,
+            Counts::Backward => -angle,
         }
     }
 }

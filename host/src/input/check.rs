@@ -7,7 +7,7 @@ mod weigh;
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 
-use super::about::Missing;
+use super::about::{About, Counts, Missing};
 use super::format::Format;
 use super::kind::Kind;
 use super::left_out::Reason;
@@ -18,6 +18,7 @@ use super::read_as::ReadAs;
 use super::side;
 use super::units::{Angles, Forward};
 use super::weight::{self, Deviation, OnDeviations};
+use crate::engine::instrument::signed;
 use crate::error::{Error, shown};
 use crate::number::shortest;
 use faults::Faults;
@@ -43,8 +44,9 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
     let mut weights = weight::Count::default();
     // Most files tell no deviations, and a million rows of none are much.
     let (mut deviations, mut told) = (Vec::new(), true);
-    for row in &scan.rows {
-        let row = &turned_round(row, read_as.angles);
+    let mut sides = Sides::default();
+    for in_file in &scan.rows {
+        let row = &turned_round(in_file, read_as.angles);
         match sample(row, &scan.places, &read_as, divisor, options) {
             Seen::Valid(sample, (kind, deviation)) => {
                 weights.add(kind);
@@ -52,6 +54,7 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
                 if told {
                     deviations.push(deviation);
                 }
+                sides.add(in_file, &sample);
                 samples.push(sample);
                 lines.push(row.line);
             }
@@ -117,8 +120,38 @@ pub fn measurement(file: &str, format: Format, scan: RawScan, options: &ReadOpti
         on_deviations,
         left_out: counts.list(),
         masked,
-        about: scan.about,
+        about: About {
+            counts: sides.counts(),
+            ..scan.about
+        },
     })
+}
+
+/// The signs that theta_s of samples has against that of their rows.
+#[derive(Default)]
+struct Sides {
+    same: bool,
+    mirrored: bool,
+    /// A row has no azimuth, or a negative theta_s beside it: theta_s has a sign.
+    signed: bool,
+}
+
+impl Sides {
+    /// One more sample in the plane of incidence; one at the normal does not tell.
+    fn add(&mut self, row: &Row, sample: &Sample<f64>) {
+        let Some(theta_s) = signed(sample) else { return };
+        self.same |= theta_s * row.theta_s > 0.0;
+        self.mirrored |= theta_s * row.theta_s < 0.0;
+        self.signed |= row.delta_phi.is_none() || row.theta_s < 0.0;
+    }
+
+    fn counts(&self) -> Counts {
+        match (self.same, self.mirrored) {
+            (true, true) if self.signed => Counts::Both,
+            (false, true) if self.signed => Counts::Backward,
+            _ => Counts::Forward,
+        }
+    }
 }
 
 /// A row with its angle of incidence not negative: the plane of incidence is seen from its other side.

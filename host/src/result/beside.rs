@@ -19,7 +19,8 @@ pub fn lines(fit: &FittedScan) -> Vec<(&'static str, String)> {
         } else {
             ""
         };
-        let (value, error) = (offset.value.to_degrees(), offset.stderr.to_degrees());
+        let value = fit.about.counts.of_file(offset.value.to_degrees());
+        let error = offset.stderr.to_degrees();
         let (size, side) = (six(value.abs()), if value < 0.0 { "little" } else { "much" });
         lines.push((
             "offset",

@@ -224,7 +224,8 @@ fn found() -> Vec<Column> {
     let worst = |row: &FitRow| Some(row.outcome.minima.last().map_or(row.outcome.mse2, |worst| worst.mse2));
     let potential = "(high - low) / high of the MSE^2 of the minima (Table 3)";
     let scale = "robust standard deviation of a residual of ln f";
-    let offset = "what the instrument reads for theta_s = 0, if that was fitted and is determined";
+    let offset =
+        "what the instrument reads for theta_s = 0, in the sign of the file, if that was fitted and is determined";
     let priors = "standard deviation of ln f by which priors were weighed";
     vec![
         number(
@@ -258,7 +259,8 @@ fn found() -> Vec<Column> {
         }),
         number("offset_deg", "deg", offset, Found, |row| {
             let offset = row.outcome.offset.filter(|offset| offset.stderr.is_finite());
-            Some(offset?.value.to_degrees())
+            let offset = offset?.value.to_degrees();
+            Some(row.scan.map_or(offset, |scan| scan.about.counts.of_file(offset)))
         }),
         number("offset_stderr_deg", "deg", "its standard error", Found, |row| {
             Some(row.outcome.offset?.stderr.to_degrees())

@@ -63,6 +63,7 @@ pub struct Findings {
 /// # Ok::<(), brdfit::error::Error>(())
 /// ```
 pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result<Findings, Error> {
+    choose::refuse_two_senses(measurement, wanted)?;
     let measurement = &deviations::settled(measurement.clone(), wanted);
     let (samples, stated) = (&measurement.samples, Stated::of(measurement));
     let found = || -> Result<_, FitError> {

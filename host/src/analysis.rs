@@ -4,6 +4,7 @@ pub mod bootstrap;
 pub mod chance;
 pub mod choose;
 pub mod converge;
+mod copies;
 pub mod criteria;
 pub mod derived;
 pub mod deviations;

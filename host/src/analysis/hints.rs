@@ -10,6 +10,7 @@ mod unmeasured;
 use brdfit_core::geometry::Sample;
 use serde::Serialize;
 
+use super::copies::copies;
 use crate::engine::scale::Scale;
 use crate::engine::{FitOptions, Outcome, robust};
 use crate::input::kind::Kind;
@@ -50,6 +51,18 @@ pub fn of_scan(measurement: &Measurement) -> Vec<Hint> {
 /// What the samples tell apart from their peaks.
 fn before_fit(measurement: &Measurement) -> Vec<Hint> {
     let mut hints = Vec::new();
+    let copies = copies(&measurement.samples);
+    if copies > 0 {
+        let (rows, are) = if copies == 1 {
+            ("row", "is a copy")
+        } else {
+            ("rows", "are copies")
+        };
+        hints.push(Hint::new(
+            "copies",
+            format!("{copies} {rows} {are} of others, with the same direction and value: they count as measured anew, which makes errors too small if they were not"),
+        ));
+    }
     hints.extend(side::other_side(&measurement.samples).map(|times| {
         let other = match measurement.read_as.forward {
             Forward::Positive => "negative",

@@ -5,24 +5,28 @@
 use brdfit_core::geometry::Sample;
 use brdfit_core::uncertainty::Place;
 
+use super::copies::directions;
 use super::misfit::coverage_factor;
 use super::reflectance::slope_by_weight;
 use super::unseen::forget;
 use crate::engine::scale::Scale;
-use crate::engine::uncertainty::NEAR_ZERO;
+use crate::engine::uncertainty::{NEAR_ZERO, UNKNOWN};
 use crate::engine::{FitOptions, Outcome, Values};
 
 /// The fit with errors that say no more than bounds and energy allow.
 ///
 /// A parameter on a bound lies no farther inside than the other bound.
 /// A weight on its lower bound that may, within its 95 % interval, reflect more than arrives is not limited by the scan: it is [`Place::Unseen`], and stays out of the errors of all else.
-/// The standard error of a parameter whose 95 % interval is all that its bounds allow is infinite; so is that of an offset of theta_s.
+/// The standard error of a parameter whose 95 % interval is all that its bounds allow is infinite; so is that of an offset of theta_s, and all where there are fewer directions than free parameters.
 pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outcome) -> Outcome {
     let model = outcome.model;
     let count = model.parameters.len();
     let factor = coverage_factor(&outcome.uncertainty);
     if !factor.is_finite() {
         return outcome;
+    }
+    if too_few_directions(samples, options) {
+        return nothing_known(outcome);
     }
     let scale = Scale::of(&[samples], options);
     let (lower, upper) = bounds(scale, options);
@@ -74,6 +78,35 @@ pub fn settled(samples: &[Sample<f64>], options: &FitOptions, mut outcome: Outco
     if let (Some(offset), Some((least, most))) = (&mut outcome.offset, options.instrument.offsets)
         && !(factor * offset.stderr < most - least)
     {
+        offset.stderr = f64::INFINITY;
+    }
+    outcome
+}
+
+/// Are there fewer different directions, with priors, than free parameters? Then whole curves of parameters fit as well, however often each direction was measured.
+fn too_few_directions(samples: &[Sample<f64>], options: &FitOptions) -> bool {
+    let free = options.free().count();
+    let known = options.with_prior().count();
+    free > known && directions(samples, free - known) + known < free
+}
+
+/// The fit without any certainty.
+fn nothing_known(mut outcome: Outcome) -> Outcome {
+    let known = &mut outcome.uncertainty;
+    let count = known.places.len();
+    let mut axes = known.axes.clone();
+    for place in known.inside().collect::<Vec<_>>() {
+        let unknown = Values::from_fn(count, |k| if k == place { UNKNOWN } else { 0.0 });
+        axes[place] = unknown;
+        known.axes_lifted[place] = unknown;
+        known.stderr_lifted[place] = f64::INFINITY;
+    }
+    *known = known.clone().with_axes(axes);
+    known.stderr = Values::from_fn(count, |place| match known.places[place] {
+        Some(Place::Inside | Place::Unseen) => f64::INFINITY,
+        _ => known.stderr[place],
+    });
+    if let Some(offset) = &mut outcome.offset {
         offset.stderr = f64::INFINITY;
     }
     outcome

@@ -228,3 +228,24 @@ fn command() {
     assert_eq!(ran.code, 2);
     assert!(ran.errors.contains("as many parameters as samples"), "{}", ran.errors);
 }
+
+/// Without residuals nothing tells an interval.
+#[test]
+fn an_exact_scan_has_no_intervals() {
+    let (_folder, file) = program::scene();
+    let arguments = ["profile", &file, "--parameter", "rho_d,m,kappa"];
+    let page = program::succeed(&arguments);
+    assert!(
+        page.contains("The fit is exact") && !page.contains("inf") && !page.contains("e30"),
+        "{page}"
+    );
+    let json = program::succeed(&[&arguments[..], &["--format", "json"]].concat());
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["exact"], true);
+    for parameter in json["parameters"].as_array().unwrap() {
+        assert_eq!(
+            (&parameter["stderr"], &parameter["intervals"][0]["low"]),
+            (&Value::Null, &Value::Null)
+        );
+    }
+}

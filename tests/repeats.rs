@@ -191,6 +191,29 @@ fn a_run_that_stands_apart_is_named() {
     assert!(fail(&["joint", "--repeats", "--share", "m", &files[0], &files[1]]).contains("--share"));
 }
 
+/// Exact runs have no errors from within, and nothing is said to be beyond them.
+#[test]
+fn exact_runs_are_called_so() {
+    let folder = TempDir::new().unwrap();
+    let flat = |name: &str, value: f64| {
+        let rows: String = (-60..=60).map(|theta_s| format!("30,{theta_s},{value}\n")).collect();
+        write(&folder, name, format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{rows}"))
+    };
+    let (a, b) = (flat("a.csv", 0.1), flat("b.csv", 0.11));
+    let arguments = ["joint", "--repeats", "--terms", "diffuse", &a, &b];
+    let page = brdfit(&arguments, b"").output;
+    assert!(
+        page.contains("The fits of runs 1 and 2 are exact") && !page.contains("inf"),
+        "{page}"
+    );
+    assert!(!page.contains("differ by no more"), "{page}");
+    let json = brdfit(&[&arguments[..], &["--format", "json"]].concat(), b"").output;
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let budget = &json["quantities"][0]["budget"];
+    assert_eq!((&budget["within"], &budget["by_chance"]), (&Value::Null, &Value::Null));
+    assert!(budget["between"].is_f64());
+}
+
 #[test]
 fn measured_runs_agree_within_the_budget() {
     let files = ["run1", "run2"].map(|run| shared(&format!("real/rt300s_aeroglaze_z307_{run}.csv")));

@@ -4,6 +4,7 @@ use brdfit_core::geometry::Sample;
 use rayon::prelude::*;
 
 use super::deviations::Stated;
+use crate::engine::uncertainty::{UNKNOWN, Uncertainty};
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
 pub mod calibrate;
@@ -18,6 +19,13 @@ pub use intervals::{End, Interval, Profile};
 
 /// Each step away from the best value is longer than the last by this factor.
 const GROWTH: f64 = 1.25;
+
+/// The standard error of a parameter beside its profile; none where it has none, on a bound, or where nothing tells it.
+pub fn stderr(index: usize, known: &Uncertainty) -> Option<f64> {
+    let error = known.stderr[index];
+    // What is rounding of an error without limit is none.
+    (error > 0.0 && error < UNKNOWN * f64::EPSILON).then_some(error)
+}
 
 /// Profiles of several parameters, all of the best fit that any of them meets.
 #[derive(Clone, Debug, PartialEq)]

@@ -51,7 +51,9 @@ fn budgets(found: &Found) -> Markup {
             four(budget.coverage),
             two(budget.expanded),
         ];
-        steps.map(two).into_iter().chain(rest)
+        // Runs of exact fits have no errors from within.
+        let shown = |x: f64| if x.is_finite() { two(x) } else { "–".into() };
+        steps.map(shown).into_iter().chain(rest)
     };
     html! {
         table {

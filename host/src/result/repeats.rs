@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::analysis::fit::FittedScan;
 use crate::analysis::repeats::{Budget, LEVEL, Quantity};
+use crate::analysis::unseen;
 use crate::document;
 use crate::engine::FitOptions;
 use crate::input::Measurement;
@@ -67,7 +68,10 @@ fn budgeted(name: &str, budget: &Budget) -> String {
         name.to_string(),
         six(budget.mean),
         two(budget.between),
-        two(budget.within),
+        match budget.within.is_finite() {
+            true => two(budget.within),
+            false => "-".into(),
+        },
         two(budget.type_a),
         two(budget.type_b),
         two(budget.combined),
@@ -126,12 +130,28 @@ pub fn verdict(found: &Found) -> Vec<String> {
         .filter(|(_, budget)| budget.differs())
         .map(|(one, budget)| format!("{} ({} times)", name(one), two(budget.between / budget.within)))
         .collect();
-    lines.push(if more.is_empty() {
-        "The runs differ by no more than their own errors.".into()
+    let exact: Vec<String> = (1..)
+        .zip(found.fits)
+        .filter(|(_, fit)| unseen::without_errors(&fit.outcome.uncertainty))
+        .map(|(number, _)| number.to_string())
+        .collect();
+    if !exact.is_empty() {
+        let (runs, have) = match &exact[..] {
+            [one] => (format!("The fit of run {one} is exact"), "it has"),
+            several => (
+                format!("The fits of runs {} are exact", several.join(" and ")),
+                "they have",
+            ),
+        };
+        lines.push(format!("{runs}: no residual tells of errors, so that {have} none from within, and nothing tells whether the runs differ by more than that."));
     } else {
-        format!("The runs differ by more than their own errors: {}.", more.join(", "))
-    });
-    lines.extend(disagreement(found));
+        lines.push(if more.is_empty() {
+            "The runs differ by no more than their own errors.".into()
+        } else {
+            format!("The runs differ by more than their own errors: {}.", more.join(", "))
+        });
+        lines.extend(disagreement(found));
+    }
     let apart: Vec<String> = budgets()
         .filter_map(|(one, budget)| Some(format!("run {} in {}", budget.apart? + 1, name(one))))
         .collect();
@@ -213,8 +233,8 @@ struct JsonBudget {
     mean: f64,
     between: f64,
     within: f64,
-    /// Probability of such a spread if nothing changed between runs.
-    by_chance: f64,
+    /// Probability of such a spread if nothing changed between runs; null where a run is exact and has no errors.
+    by_chance: Option<f64>,
     type_a: f64,
     type_b: f64,
     combined: f64,
@@ -238,7 +258,7 @@ pub fn json(found: &Found) -> String {
         mean: budget.mean,
         between: budget.between,
         within: budget.within,
-        by_chance: budget.by_chance,
+        by_chance: budget.within.is_finite().then_some(budget.by_chance),
         type_a: budget.type_a,
         type_b: budget.type_b,
         combined: budget.combined,

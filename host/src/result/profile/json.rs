@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::findings::Findings;
-use crate::analysis::profile::{Interval, Profile};
+use crate::analysis::profile::{self, Interval, Profile};
+use crate::analysis::unseen;
 use crate::document;
 use crate::engine::Outcome;
 use crate::result::json::provenance::{Provenance, provenance};
@@ -19,6 +20,8 @@ struct Document<'a> {
     /// Standard deviation of a residual of ln f.
     residual_scale: f64,
     degrees_of_freedom: usize,
+    /// Without residuals there are neither errors nor intervals.
+    exact: bool,
     /// Sum of squared residuals of the best fit.
     cost: f64,
     /// That of the search, if a profile met a better fit; else null.
@@ -44,9 +47,10 @@ struct Parameter {
 #[derive(Serialize)]
 struct Ends {
     level: f64,
-    low: f64,
+    /// Null where the fit is exact, as nothing tells an interval.
+    low: Option<f64>,
     low_at_bound: bool,
-    high: f64,
+    high: Option<f64>,
     high_at_bound: bool,
 }
 
@@ -84,6 +88,7 @@ pub fn json(findings: &Findings) -> String {
         samples: findings.outcome.samples,
         residual_scale: known.scale,
         degrees_of_freedom: known.degrees_of_freedom,
+        exact: unseen::without_errors(known),
         cost: findings.outcome.cost,
         improved_from: findings.improved_from,
         selection: findings.choice.as_ref().map(selection),
@@ -108,11 +113,13 @@ pub fn json(findings: &Findings) -> String {
 }
 
 fn parameter(profile: &Profile, outcome: &Outcome) -> Parameter {
+    let exact = unseen::without_errors(&outcome.uncertainty);
+    let told = |value: f64| (!exact).then_some(value);
     let ends = |interval: Interval| Ends {
         level: interval.level,
-        low: interval.low.value,
+        low: told(interval.low.value),
         low_at_bound: interval.low.at_bound,
-        high: interval.high.value,
+        high: told(interval.high.value),
         high_at_bound: interval.high.at_bound,
     };
     let points = profile.points.iter().map(|point| At {
@@ -124,7 +131,7 @@ fn parameter(profile: &Profile, outcome: &Outcome) -> Parameter {
     Parameter {
         name: outcome.model.parameters[profile.index].name,
         best: profile.best.value,
-        stderr: Some(outcome.uncertainty.stderr[profile.index]).filter(|&error| error > 0.0),
+        stderr: profile::stderr(profile.index, &outcome.uncertainty),
         intervals: profile.intervals.map(ends),
         points: points.collect(),
     }

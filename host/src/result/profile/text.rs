@@ -5,7 +5,8 @@ use std::fmt::Write;
 use crate::analysis::bootstrap::quantile;
 use crate::analysis::profile::calibrate::LEVELS;
 use crate::analysis::profile::findings::Findings;
-use crate::analysis::profile::{End, Interval};
+use crate::analysis::profile::{self, End, Interval};
+use crate::analysis::unseen;
 use crate::number::{percent, significant, two};
 use crate::result::text::choice;
 use crate::result::words::correlated;
@@ -39,16 +40,26 @@ pub fn text(findings: &Findings) -> String {
         page += "\n\n";
     }
     row(&mut page, ["", "best", "+-", "68 % interval", "95 % interval"]);
+    let exact = unseen::without_errors(known);
     let name = |index: usize| findings.outcome.model.parameters[index].name;
     for profile in &findings.profiles {
         let index = profile.index;
-        let [narrow, wide] = profile.intervals.map(|interval| shown(&interval));
-        let error = known.stderr[index];
-        let error = if error > 0.0 { two(error) } else { "-".into() };
+        let [narrow, wide] = profile.intervals.map(|interval| match exact {
+            true => "-".into(),
+            false => shown(&interval),
+        });
+        let error = match profile::stderr(index, known) {
+            Some(error) => two(error),
+            None => "-".into(),
+        };
         row(
             &mut page,
             [name(index), &five(profile.best.value), &error, &narrow, &wide],
         );
+    }
+    if exact {
+        page += "\n  The fit is exact: no residual tells of errors, and so nothing tells which other values the scan allows.\n";
+        return page;
     }
     if !findings.copies.is_empty() {
         let _ = writeln!(

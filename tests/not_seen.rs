@@ -104,6 +104,140 @@ fn an_exact_fit_has_no_errors() {
     assert!(page.contains("the fit is exact") && !page.contains("+- 0\n"), "{page}");
 }
 
+/// In single precision the residuals of an exact scan are the rounding of `f32`, and tell of errors no more than those of `f64`.
+#[test]
+fn rounding_to_f32_is_no_noise() {
+    let (folder, file) = program::scene();
+    for precision in ["f32", "f64"] {
+        let fit = program::succeed(&["fit", &file, "--precision", precision, "--format", "json"]);
+        let fit: Value = serde_json::from_str(&fit).unwrap();
+        assert_eq!(fit["uncertainty"]["exact"], true, "{precision}");
+        assert_eq!(fit["uncertainty"]["stderr"]["m"], Value::Null, "{precision}");
+    }
+    // Noise of a hundredth of a per cent is told in both.
+    let noisy = program::succeed(&[&program::SCENE[..], &["--noise", "1e-4"]].concat());
+    let noisy = program::write(&folder, "noisy.csv", noisy);
+    let page = program::succeed(&["fit", &noisy, "--precision", "f32"]);
+    assert!(!page.contains("the fit is exact"), "{page}");
+}
+
+/// What is said of standard deviations beside residuals that are rounding is no number of times.
+#[test]
+fn an_exact_fit_refutes_no_deviations() {
+    let rows: String = (-85..=85).map(|theta_s| format!("45,{theta_s},0.1,0.01\n")).collect();
+    let scan = format!("theta_i_deg,theta_s_deg,brdf_per_sr,sigma\n{rows}");
+    for more in [&[][..], &["--absolute-sigma"]] {
+        let page = program::brdfit(&[&["fit", "-", "--terms", "diffuse"], more].concat(), scan.as_bytes()).output;
+        assert!(
+            !page.contains("refutes") && !page.contains("NaN") && !page.contains("inf"),
+            "{page}"
+        );
+    }
+    let page = program::brdfit(&["fit", "-", "--terms", "diffuse"], scan.as_bytes()).output;
+    assert!(
+        page.contains("the residuals are rounding, which tells nothing of the file's standard deviations"),
+        "{page}"
+    );
+}
+
+/// Thirty rows in two directions tell of two parameters at most, and copies of rows are called so.
+#[test]
+fn fewer_directions_than_parameters_tell_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = |directions: &[i32]| {
+        let mut text = "theta_i_deg,theta_s_deg,brdf_per_sr\n".to_string();
+        for k in 0..30 {
+            let theta_s = directions[k % directions.len()];
+            text += &format!(
+                "30,{theta_s},{}\n",
+                0.1 + 0.001 * (k / directions.len() % 2) as f64 + 1e-4 * f64::from(theta_s)
+            );
+        }
+        program::write(&folder, &format!("{}.csv", directions.len()), text)
+    };
+    let fit = |file: &str, terms: &str| {
+        let arguments = [
+            "fit",
+            file,
+            "--repeats",
+            "--terms",
+            terms,
+            "--fix",
+            "n=1.5",
+            "--format",
+            "json",
+        ];
+        let fit: Value = serde_json::from_str(&program::succeed(&arguments)).unwrap();
+        fit
+    };
+    let two = table(&[10, 20]);
+    // rho_d, rho_s and m.
+    let few = fit(&two, "diffuse,surface");
+    let known = &few["uncertainty"];
+    for name in ["rho_d", "rho_s", "m"] {
+        assert_eq!(known["stderr"][name], Value::Null, "{name}");
+    }
+    assert_eq!(few["derived"][0]["reflectance"]["value"], Value::Null);
+    let about = |fit: &Value| {
+        let hints = fit["hints"].as_array().unwrap().iter();
+        let copies = hints.filter(|hint| hint["about"] == "copies");
+        copies
+            .map(|hint| hint["text"].as_str().unwrap().to_string())
+            .collect::<String>()
+    };
+    assert!(about(&few).starts_with("26 rows are copies of others"), "{few}");
+    // Seven directions are enough.
+    let enough = fit(&table(&[-60, -40, -20, 0, 10, 20, 60]), "diffuse,surface");
+    assert!(enough["uncertainty"]["stderr"]["rho_d"].is_f64(), "{enough}");
+}
+
+/// A peak that is not determined has no place either, and files of other programs say what is not determined, and where energy is not conserved.
+#[test]
+fn exports_and_pages_repeat_what_is_not_determined() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: usize| format!("30,10,{}\n", 0.1 + 0.001 * (k * k % 7) as f64);
+    let table = "theta_i_deg,theta_s_deg,brdf_per_sr\n".to_string() + &(0..30).map(row).collect::<String>();
+    let file = program::write(&folder, "one.csv", table);
+    let page = program::succeed(&["fit", &file, "--repeats"]);
+    assert!(
+        page.contains("not determined") && !page.contains("not determined at"),
+        "{page}"
+    );
+    let json = program::succeed(&["fit", &file, "--repeats", "--format", "json"]);
+    let fit: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(fit["derived"][0]["peak_theta_s_deg"], Value::Null);
+    let result = program::write(&folder, "one.json", json);
+    let scene = program::succeed(&program::SCENE);
+    let scene = program::write(&folder, "scene.csv", scene);
+    let bright = program::succeed(&["fit", &scene, "--format", "json"]);
+    let bright = program::write(&folder, "scene.json", bright);
+    for to in [
+        "zemax",
+        "c",
+        "rust",
+        "glsl",
+        "bird",
+        "mitsuba",
+        "gltf",
+        "materialx",
+        "openpbr",
+        "mitsuba-native",
+        "mitsuba-principled",
+    ] {
+        let export = |result: &str| program::brdfit(&["export", result, "--to", to], b"").output;
+        let text = export(&result);
+        assert!(
+            text.contains("this scan determines rho_d, rho_s, rho_v, m, n and kappa not at all"),
+            "{to}: {text}"
+        );
+        let text = export(&bright);
+        assert!(
+            text.contains("ENERGY IS NOT CONSERVED: more light leaves than arrives at theta_i = 30, 60 deg"),
+            "{to}: {text}"
+        );
+    }
+}
+
 /// A model that makes energy is exported with a word.
 #[test]
 fn a_total_above_one_is_said() {

@@ -11,8 +11,10 @@ use serde_json::Value;
 
 use crate::engine::{self, Material};
 use crate::error::Error;
+use crate::number::six;
 use crate::parameters::{check, model};
 use crate::plain::plain;
+use crate::result::words::listed;
 
 /// A model, and what is known about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +99,9 @@ impl Model {
         if let Some(rms) = result["rms_ln"].as_f64() {
             origin += &format!(", rms of ln f {rms:.3}");
         }
+        for caution in cautions(result) {
+            origin += &format!("; {caution}");
+        }
         let stderr = |parameter: &Parameter| result["uncertainty"]["stderr"][parameter.name].as_f64();
         Ok(Model {
             name,
@@ -143,6 +148,49 @@ impl Model {
             Error::new(format!("{form} cannot hold the model {}", self.material.model.name))
                 .help("--to zemax, bird and openmaterial take any model; or fit --model abg")
         })
+    }
+}
+
+/// What a user of the model must know of the fit: which parameters it does not determine, which lobes the scan does not see, and where more light leaves than arrives.
+fn cautions(result: &Value) -> Vec<String> {
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let words = |value: &Value| -> Vec<String> {
+        let all = list(value).into_iter();
+        all.filter_map(|one| Some(one.as_str()?.to_string())).collect()
+    };
+    let known = &result["uncertainty"];
+    let open = list(&known["undetermined"]);
+    let mut cautions: Vec<String> = open
+        .iter()
+        .filter_map(|what| Some(format!("this scan determines {}", open_words(what, &words)?)))
+        .collect();
+    let unseen = words(&known["not_seen"]);
+    if !unseen.is_empty() {
+        cautions.push(format!(
+            "not seen by this scan, and set to the least: {}",
+            unseen.join(", ")
+        ));
+    }
+    let above = list(&result["derived"]);
+    let above = above.iter().filter(|at| at["energy_conserved"] == false);
+    let above: Vec<String> = above.filter_map(|at| Some(six(at["theta_i_deg"].as_f64()?))).collect();
+    if !above.is_empty() {
+        cautions.push(format!(
+            "ENERGY IS NOT CONSERVED: more light leaves than arrives at theta_i = {} deg",
+            above.join(", ")
+        ));
+    }
+    cautions
+}
+
+/// Such as "rho_s and n only through rho_s F(theta_d)", or "n not at all".
+fn open_words(what: &Value, words: &impl Fn(&Value) -> Vec<String>) -> Option<String> {
+    let (names, through) = (words(&what["parameters"]), words(&what["through"]));
+    let listed = |all: &[String]| listed(&all.iter().map(String::as_str).collect::<Vec<_>>());
+    match (names.is_empty(), through.is_empty()) {
+        (true, _) => None,
+        (false, true) => Some(format!("{} not at all", listed(&names))),
+        (false, false) => Some(format!("{} only through {}", listed(&names), listed(&through))),
     }
 }
 

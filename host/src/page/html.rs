@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::provenance;
 use super::section::{Section, Table};
 use crate::analysis::choose::Choice;
-use crate::analysis::derived::Value;
+use crate::analysis::derived::{Value, determined};
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
@@ -313,7 +313,7 @@ fn angles(section: &Section) -> Markup {
                     td { (at.rho_s_f.map_or_else(|| "–".into(), with_error)) }
                     td { (at.rho_v_f.map_or_else(|| "–".into(), with_error)) }
                     td { (at.peak.map_or_else(|| "–".into(), |peak| with_error(peak.f))) }
-                    td { (at.peak.map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
+                    td { (at.peak.filter(|peak| determined(peak.f, known).is_some()).map_or_else(|| "–".into(), |peak| format!("{:.2}", peak.theta_s.to_degrees()))) }
                     td { (at.peak.and_then(|peak| peak.width).map_or_else(|| "–".into(), |width| with_error(Value { value: width.value.to_degrees(), stderr: width.stderr.to_degrees() }))) }
                     td { (with_error(at.reflectance)) @if at.conserves_energy(known) == Some(false) { " (above 1)" } }
                 } }

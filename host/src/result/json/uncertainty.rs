@@ -88,6 +88,7 @@ pub struct AtAngle {
     theta_i_deg: f64,
     rho_s_f: Option<Number>,
     rho_v_f: Option<Number>,
+    /// Null where the peak is not determined, as its value.
     peak_theta_s_deg: Option<f64>,
     peak_brdf_per_sr: Option<Number>,
     width_deg: Option<Number>,
@@ -167,7 +168,10 @@ pub fn at_angle(at: &Derived, known: &Uncertainty) -> AtAngle {
         theta_i_deg: at.theta_i.to_degrees(),
         rho_s_f: at.rho_s_f.map(number),
         rho_v_f: at.rho_v_f.map(number),
-        peak_theta_s_deg: at.peak.map(|peak| peak.theta_s.to_degrees()),
+        peak_theta_s_deg: at.peak.and_then(|peak| {
+            determined(peak.f, known)?;
+            Some(peak.theta_s.to_degrees())
+        }),
         peak_brdf_per_sr: at.peak.map(|peak| number(peak.f)),
         width_deg: at.peak.and_then(|peak| peak.width).map(degrees),
         from_data: at.peak.and_then(|peak| peak.from_data).map(|read| FromData {

@@ -2,7 +2,7 @@
 
 use brdfit_core::uncertainty::Place;
 
-use crate::analysis::derived::{Derived, Value};
+use crate::analysis::derived::{Derived, Value, determined};
 use crate::analysis::misfit::coverage_factor;
 use crate::analysis::undetermined::undetermined;
 use crate::analysis::unseen;
@@ -135,8 +135,10 @@ fn table(derived: &[Derived], known: &Uncertainty) -> Vec<String> {
             six(at.theta_i.to_degrees()),
             at.rho_s_f.map_or_else(none, shown),
             at.rho_v_f.map_or_else(none, shown),
-            peak.map_or_else(none, |peak| {
-                format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees())
+            peak.map_or_else(none, |peak| match determined(peak.f, known) {
+                Some(_) => format!("{} at {:.2}", shown(peak.f), peak.theta_s.to_degrees()),
+                // Where a lobe of unknown height is brightest says nothing.
+                None => shown(peak.f),
             }),
             width.map_or_else(none, |width| shown(degrees(width))),
             shown(at.reflectance) + excess,

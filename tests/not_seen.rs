@@ -104,6 +104,21 @@ fn an_exact_fit_has_no_errors() {
     assert!(page.contains("the fit is exact") && !page.contains("+- 0\n"), "{page}");
 }
 
+/// Along a circle n and kappa stand for each other. Where n is not determined kappa seems to be known at the place where the fit ended: 10.1 +- 1.4 of this scan, which was made with 1.
+#[test]
+fn kappa_is_not_told_beside_an_n_that_is_open() {
+    let fit = fitted("fit/narrow_metal.csv", &["--terms", "diffuse,surface,absorbing"]);
+    let open = fit["uncertainty"]["undetermined"].as_array().unwrap().iter();
+    let open: Vec<&Value> = open.flat_map(|what| what["parameters"].as_array().unwrap()).collect();
+    for name in ["n", "kappa"] {
+        assert!(open.contains(&&Value::from(name)), "{name} of {open:?}");
+    }
+    // What is on the circle is known all the same.
+    let product = &fit["derived"][0]["rho_s_f"];
+    let error = product["stderr"].as_f64().unwrap() / product["value"].as_f64().unwrap();
+    assert!(error < 0.2, "{error}");
+}
+
 /// In single precision the residuals of an exact scan are the rounding of `f32`, and tell of errors no more than those of `f64`.
 #[test]
 fn rounding_to_f32_is_no_noise() {

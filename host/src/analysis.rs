@@ -6,6 +6,7 @@ pub mod choose;
 pub mod converge;
 mod copies;
 pub mod criteria;
+pub mod curved;
 pub mod derived;
 pub mod deviations;
 pub mod fit;

@@ -11,7 +11,7 @@ use super::derived::{self, Derived};
 use super::deviations::{self, Stated, Verdict};
 use super::hints::{self, Hint};
 use super::proof::{Goal, Proof, of_outcome};
-use super::{range, unseen};
+use super::{curved, range, unseen};
 use crate::engine::clock::Stopwatch;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
@@ -215,7 +215,7 @@ impl FittedScan {
     }
 }
 
-/// What the engine found of the samples of a measurement, less outliers: without lobes that none of them sees, and with errors that account for the correlation of the residuals, or are those of the file's standard deviations, and say no more than bounds and energy allow; what became of these.
+/// What the engine found of the samples of a measurement, less outliers: without lobes that none of them sees, and with errors that account for the correlation of the residuals, or are those of the file's standard deviations, say no more than bounds and energy allow, and hold along valleys that are curved; what became of these.
 pub fn known(
     measurement: &Measurement,
     samples: &[Sample<f64>],
@@ -223,9 +223,15 @@ pub fn known(
     outcome: Outcome,
 ) -> (Outcome, Option<Verdict>) {
     let mut outcome = unseen::settled(samples, options, outcome);
-    let (uncertainty, verdict) = deviations::uncertainty(samples, &outcome, Stated::of(measurement));
+    let stated = Stated::of(measurement);
+    let (uncertainty, verdict) = deviations::uncertainty(samples, &outcome, stated);
     outcome.uncertainty = uncertainty;
-    (range::settled(samples, options, outcome), verdict)
+    let scale = match (stated, verdict) {
+        (Some(stated), Some(Verdict::Used | Verdict::Absolute(_))) => stated.sigma,
+        _ => outcome.uncertainty.scale,
+    };
+    let outcome = range::settled(samples, options, outcome);
+    (curved::settled(samples, options, outcome, scale * scale), verdict)
 }
 
 /// Fits one scan with what is wanted.

@@ -82,7 +82,7 @@ class Fit:
     aperture_half_angle: float
     """Half-angle of the cone that the detector sees, degrees; 0 for a point."""
     offset: float
-    """What the instrument reads for theta_s = 0, degrees, positive forward; 0 if it was not fitted."""
+    """What the instrument reads for theta_s = 0, degrees, positive forward as the angles of the scan are; 0 if it was not fitted. The tables of a fit have it in the sign of the file (`offset_deg`)."""
     at_bound: tuple[str, ...]
     """Names of the parameters that ended on a bound."""
     minima: tuple[Minimum, ...]

@@ -30,7 +30,7 @@ pub fn hold(
 }
 
 /// A scan with one parameter held.
-pub(super) struct Held<'a> {
+pub(in crate::analysis) struct Held<'a> {
     pub samples: &'a [Sample<f64>],
     pub options: &'a FitOptions,
     pub index: usize,

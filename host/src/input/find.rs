@@ -303,6 +303,8 @@ mod tests {
             ("aoi,theta_s,brdf,expanded uncertainty (k=2)", WeightKind::Sigma(2.0)),
             ("aoi,theta_s,brdf,u (%)", WeightKind::PercentSigma(1.0)),
             ("aoi,theta_s,brdf,relative uncertainty", WeightKind::RelativeSigma(1.0)),
+            ("aoi,theta_s,brdf,sigma/BRDF", WeightKind::RelativeSigma(1.0)),
+            ("aoi,theta_s,brdf,std/BRDF (%)", WeightKind::PercentSigma(1.0)),
             ("aoi,theta_s,brdf,std", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,brdf std [1/sr]", WeightKind::Sigma(1.0)),
             ("aoi,theta_s,brdf,standard deviation of BRDF", WeightKind::Sigma(1.0)),
@@ -318,6 +320,7 @@ mod tests {
                 .to_string()
                 .contains("--coverage")
         );
+        assert_eq!(find("aoi,theta_s,brdf,1/sigma").unwrap().values[0].weight, None);
         for of_another_unit in ["u (‰)", "sigma (um)", "error (deg)", "std (dB)", "sigma (nm)"] {
             let error = find(&format!("aoi,theta_s,brdf,{of_another_unit}")).unwrap_err();
             assert!(

@@ -136,7 +136,7 @@ fn with_breaks(name: &str) -> (String, Vec<usize>) {
                 '√' | '∛' => plain.push_str("root"),
                 '∂' => plain.push_str("delta"),
                 '′' => plain.push_str("prime"),
-                '/' | '÷' if name[at + c.len_utf8()..].trim_start().starts_with("cos") => plain.push_str("over"),
+                '/' | '÷' if plain == "1" || is_divisor(&name[at + c.len_utf8()..]) => plain.push_str("over"),
                 'ᵢ' => plain.push('i'),
                 'ᵣ' => plain.push('r'),
                 'ₛ' => plain.push('s'),
@@ -156,6 +156,14 @@ fn with_breaks(name: &str) -> (String, Vec<usize>) {
         }
     }
     (plain, breaks)
+}
+
+/// Does a text begin with what values are divided by?
+fn is_divisor(text: &str) -> bool {
+    let letters = || text.trim_start().chars().flat_map(char::to_lowercase);
+    ["cos", "brdf"]
+        .iter()
+        .any(|word| letters().take(word.len()).eq(word.chars()))
 }
 
 #[cfg(test)]
@@ -200,6 +208,9 @@ mod tests {
             ("√BRDF", "rootbrdf"),
             ("BRDF′", "brdfprime"),
             ("BRDF / cos(theta_s)", "brdfovercosthetas"),
+            ("1/sigma", "1oversigma"),
+            ("sigma / BRDF", "sigmaoverbrdf"),
+            ("theta_s/theta_i", "thetasthetai"),
             ("- AOI -", "aoi"),
         ] {
             assert_eq!(seen(text).0, name, "{text}");

@@ -112,6 +112,8 @@ fn readings(head: &Head) -> impl Iterator<Item = Named> + '_ {
         Some(plain(rest))
     };
     let relative = ["relative", "rel"].into_iter().find_map(|word| strip(whole, word));
+    // Such as `sigma/BRDF`.
+    let relative = relative.or_else(|| whole.strip_suffix("overbrdf").map(plain));
     let expanded = strip(relative.as_deref().unwrap_or(whole), "expanded");
     let rest = expanded
         .clone()

@@ -32,6 +32,10 @@ def _subject(of: Scan | Fit, search: _options.Search) -> tuple[Scan, dict[str, A
     raise TypeError(f"this takes a Scan or a Fit, not {type(of).__name__}; brdfit.scan makes one of arrays")
 
 
+def _number(found: float | None) -> float:
+    return float("nan") if found is None else found
+
+
 @dataclass(frozen=True)
 class Interval:
     """The values of a parameter that a scan does not refute at a level."""
@@ -39,9 +43,9 @@ class Interval:
     level: float
     """Confidence, 0 to 1."""
     low: float
-    """Least value."""
+    """Least value; NaN where the fit is exact, as nothing tells an interval then."""
     high: float
-    """Largest value."""
+    """Largest value; NaN likewise."""
     low_at_bound: bool
     """The least value is the bound of the parameter: the data do not end the interval."""
     high_at_bound: bool
@@ -57,7 +61,7 @@ class Profile:
     best: float
     """Where the cost is least."""
     stderr: float
-    """Its standard error; NaN where it is on a bound or not seen."""
+    """Its standard error; NaN where it is on a bound or not seen, or the fit is exact."""
     intervals: tuple[Interval, ...]
     """At 68 % and 95 %."""
     value: NDArray[np.float64]
@@ -120,8 +124,9 @@ def profile(
         points = found["points"]
         column = {name: np.array([point[name] for point in points]) for name in ("value", "cost", "rise")}
         x = np.array([point["parameters"] for point in points])
-        stderr = float("nan") if found["stderr"] is None else found["stderr"]
-        intervals = tuple(Interval(**interval) for interval in found["intervals"])
+        stderr = _number(found["stderr"])
+        ends = ("low", "high")
+        intervals = tuple(Interval(**{**one, **{end: _number(one[end]) for end in ends}}) for one in found["intervals"])
         return Profile(found["name"], found["best"], stderr, intervals, x=x, **column)
 
     copies = details["bootstrap"]
@@ -189,7 +194,7 @@ class Joint:
     parameters: tuple[dict[str, float], ...]
     """Of each scan, by name."""
     stderr: tuple[dict[str, float | None], ...]
-    """Their standard errors; None on a bound, or where the error is larger than the parameter."""
+    """Their standard errors; None on a bound, or of what is not determined, as `undetermined` of `details` and its scans has it."""
     cost: float
     """Sum of squared residuals of ln BRDF over all scans."""
     cost_separate: float

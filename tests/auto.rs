@@ -229,6 +229,7 @@ fn profiles_and_joint_fits_choose_too() {
         "",
     );
     assert_eq!(found["selection"]["candidates"].as_array().expect("a list").len(), 2);
+    assert_eq!(found["not_compared"], serde_json::json!(["abg", "harvey-shack"]));
     let message = fail(&["joint", &file, &file, "--model", LIST, "--share", "m,g"]);
     assert!(
         message.contains("no model of the list has all parameters of --share m,g"),

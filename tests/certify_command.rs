@@ -204,6 +204,25 @@ fn what_has_no_proof_is_refused() {
     assert!(fail(&["certify", &fewer]).contains("give --terms diffuse,surface"));
     let wide = results("wide.json", &[]);
     assert!(fail(&["certify", &wide, "--fix", "n=1.5"]).contains("n is "));
+    for (more, what) in [
+        (&["--fix", "n=1.5"][..], "n was held between 1.5 and 1.5 in the results"),
+        (&["--prior", "n=1.5+-0.1"], "instrument: "),
+        (&["--fit-offset"], "instrument: "),
+        (&["--robust"], "robust: true in the results, false here"),
+        (&["--max-angle", "60", "--quiet"], "read options: "),
+    ] {
+        let message = fail(&["certify", &results("other.json", more)]);
+        assert!(message.contains(what), "{message}");
+    }
+    // A table tells no options, but how many samples the fit had and what its parameters cost.
+    let table = |more: &[&str]| {
+        let text = succeed(&[&["fit", &scan, "--format", "csv"], more].concat());
+        write(&folder, "other.csv", text)
+    };
+    let message = fail(&["certify", &table(&["--max-angle", "60", "--quiet"])]);
+    assert!(message.contains(" samples in the results, 171 here"), "{message}");
+    let message = fail(&["certify", &table(&["--fit-offset"])]);
+    assert!(message.contains("the MSE^2 is "), "{message}");
     for part in ["0", "100%", "-1%", "nan", "five"] {
         let ran = brdfit(&["certify", &scan, &format!("--within={part}")], b"");
         assert!(

@@ -2,6 +2,7 @@
 
 pub(crate) mod batch;
 pub(crate) mod certify;
+mod claim;
 pub(crate) mod compare;
 pub(crate) mod completions;
 pub(crate) mod converge;

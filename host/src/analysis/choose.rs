@@ -29,21 +29,10 @@ pub const SETS: [(u8, Option<u8>); 5] = {
     sets
 };
 
-/// The first of the largest sets with a diffuse term that a set adds terms to.
+/// The set without the last term of a set, if it has a diffuse one.
 const fn tested_against(terms: u8) -> Option<u8> {
-    let (mut best, mut k) = (None, 0);
-    while k < TERM_SETS.len() {
-        let set = TERM_SETS[k];
-        let larger = match best {
-            None => true,
-            Some(best) => set.count_ones() > u8::count_ones(best),
-        };
-        if set & DIFFUSE != 0 && set & terms == set && set != terms && larger {
-            best = Some(set);
-        }
-        k += 1;
-    }
-    best
+    let set = terms & !(1 << terms.ilog2());
+    if set & DIFFUSE != 0 { Some(set) } else { None }
 }
 
 /// What a scan is to be fitted with.
@@ -125,11 +114,12 @@ pub fn left_out_by_auto(samples: &[Sample<f64>], options: &FitOptions) -> u8 {
     })
 }
 
-/// Do the bounds permit what the terms leave out?
+/// Do the bounds and the priors permit what the terms leave out? A prior tells of a parameter, so that a fit without it would be judged by other residuals.
 fn allowed(options: &FitOptions) -> bool {
     (0..options.lower.len()).all(|place| {
-        let matters = options.model.absent(place) == 0.0;
-        !(options.model.left_out(options.terms, place) && matters) || options.lower[place] <= 0.0
+        let bound = options.model.absent(place) == 0.0 && options.lower[place] > 0.0;
+        let told = bound || options.instrument.priors[place].is_some();
+        !(options.model.left_out(options.terms, place) && told)
     })
 }
 
@@ -350,14 +340,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_set_is_tested_against_the_largest_within() {
+    fn each_set_is_tested_against_that_without_its_last_term() {
         const METAL: u8 = DIFFUSE | SURFACE | ABSORBING;
         let sets = [
             (DIFFUSE, None),
             (DIFFUSE | SURFACE, Some(DIFFUSE)),
             (METAL, Some(DIFFUSE | SURFACE)),
             (DIFFUSE | SURFACE | VOLUME, Some(DIFFUSE | SURFACE)),
-            (ALL, Some(METAL)),
+            (ALL, Some(DIFFUSE | SURFACE | VOLUME)),
         ];
         assert_eq!(SETS, sets);
     }

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
+use super::claim;
 use super::prove::{ProofArguments, ended, part, proving, so_far};
 use super::subject::{self, Subject};
 use crate::analysis::choose::Wanted;
@@ -15,13 +16,10 @@ use crate::engine::{self, FitOptions, Until, robust};
 use crate::error::Error;
 use crate::input::{self, ReadOptions, measurement};
 use crate::interrupt;
-use crate::number::shortest;
 use crate::options::SearchArguments;
 use crate::output::{OutputArguments, TableFormat, deliver};
-use crate::page::results::StoredFit;
 use crate::result;
 use crate::streams::{Ended, Streams};
-use crate::terms::term_names;
 
 /// Proves that no parameters within the bounds fit a scan better, or finds those that do
 #[derive(Args, Debug)]
@@ -108,7 +106,7 @@ fn known(subject: &Subject, wanted: &Wanted) -> Result<FittedScan, Error> {
     let Ok(material) = &stored.material else {
         return Ok(fitted);
     };
-    same_claim(stored, &fitted.options).map_err(|error| error.in_file(&label))?;
+    claim::same(stored, measurement, &fitted).map_err(|error| error.in_file(&label))?;
     let explain = |error| input::explain(measurement, error);
     let kept = robust::kept(&measurement.samples, &fitted.outcome);
     let options = FitOptions {
@@ -122,34 +120,4 @@ fn known(subject: &Subject, wanted: &Wanted) -> Result<FittedScan, Error> {
         }
         _ => Ok(fitted),
     }
-}
-
-/// Refuses results of which a proof with these options would not be one.
-///
-/// # Errors
-/// Another model or other terms than theirs, or bounds that exclude them.
-fn same_claim(stored: &StoredFit, options: &FitOptions) -> Result<(), Error> {
-    let Ok(material) = &stored.material else {
-        return Ok(());
-    };
-    if material.model != options.model {
-        let name = material.model.name;
-        return Err(Error::new(format!("the results are of the model {name}"))
-            .help(format!("only --model {} has a proof", options.model.name)));
-    }
-    if let Some(terms) = stored.terms.filter(|terms| *terms != options.terms) {
-        let names = term_names(terms).join(",");
-        return Err(Error::new(format!("the results are of the terms {names}")).help(format!("give --terms {names}")));
-    }
-    for place in options.present() {
-        let (name, value) = (options.model.parameters[place].name, material.values[place]);
-        if !(options.lower[place] <= value && value <= options.upper[place]) {
-            return Err(Error::new(format!(
-                "{name} is {} in the results, outside its bounds",
-                shortest(value)
-            ))
-            .help("give the --bounds and --fix of the fit"));
-        }
-    }
-    Ok(())
 }

@@ -81,6 +81,9 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     arguments.search.instrument.refuse_offset("joint")?;
     let wanted = arguments.search.wanted()?;
     let candidates = with_shared(&wanted, arguments.share.as_deref().unwrap_or("m"))?;
+    let compared = |model: &&Model| candidates.iter().any(|(options, _)| options.model == *model);
+    let absent = wanted.models().into_iter().filter(|model| !compared(model));
+    let absent: Vec<&str> = absent.map(|model| model.name).collect();
     let target = arguments.output.target(&arguments.scans)?;
     let measurements = input::read(&arguments.scans, &arguments.read, streams.input)?;
     if !(2..=SCANS).contains(&measurements.len()) {
@@ -103,8 +106,8 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
             None => Error::new(format!("all scans together: {error}")).help("share more parameters, or --fix some"),
         })?;
     let text = match arguments.output.format {
-        JointFormat::Text => text(&fits, &measurements, by),
-        JointFormat::Json => json(&fits, &measurements, by),
+        JointFormat::Text => text(&fits, &measurements, by, &absent),
+        JointFormat::Json => json(&fits, &measurements, by, &absent),
         JointFormat::Html => return Err(no_page()),
     };
     deliver(text.as_bytes(), target.as_ref(), streams.output)?;
@@ -234,7 +237,7 @@ fn shared(model: &Model, list: &str) -> Result<Vec<bool>, Error> {
     Ok(shared)
 }
 
-fn text(fits: &Fits, measurements: &[Measurement], by: By) -> String {
+fn text(fits: &Fits, measurements: &[Measurement], by: By, absent: &[&str]) -> String {
     let Candidate {
         options, fitted, known, ..
     } = fits.best();
@@ -291,6 +294,10 @@ fn text(fits: &Fits, measurements: &[Measurement], by: By) -> String {
     if fits.candidates.len() > 1 {
         lines.extend(table(fits));
     }
+    if !absent.is_empty() {
+        let names = absent.join(", ");
+        lines.push(format!("  not compared, without a parameter of --share: {names}"));
+    }
     lines.join("\n") + "\n"
 }
 
@@ -331,7 +338,8 @@ fn table(fits: &Fits) -> Vec<String> {
     lines
 }
 
-fn json(fits: &Fits, measurements: &[Measurement], by: By) -> String {
+/// The document; `absent` are models that could not be compared.
+fn json(fits: &Fits, measurements: &[Measurement], by: By, absent: &[&str]) -> String {
     let best = fits.best();
     let (model, fitted, known) = (best.options.model, &best.fitted, &best.known);
     let open = |scan: usize, shared: bool| -> Vec<&str> {
@@ -372,6 +380,7 @@ fn json(fits: &Fits, measurements: &[Measurement], by: By) -> String {
         "model": model.name,
         "terms": term_names(best.options.terms & model.terms),
         "selection": selection,
+        "not_compared": absent,
         "shared": shared,
         "samples": fitted.samples,
         "cost": fitted.cost,

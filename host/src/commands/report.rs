@@ -66,6 +66,11 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     let target = target(&inputs)?;
     let subjects = subject::settled(subjects, &wanted);
     if let Some(folder) = &arguments.plot {
+        if arguments.output.as_ref() == Some(folder) {
+            return Err(Error::new("--output is the page, and --plot a folder for its figures")
+                .in_file(folder.display().to_string())
+                .help("give them two names"));
+        }
         make(folder)?;
     }
     let goal = arguments

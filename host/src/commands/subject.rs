@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
 use crate::error::Error;
-use crate::input::{self, Measurement, ReadOptions};
+use crate::input::{self, Measurement, ReadOptions, STDIN};
 use crate::page::results::{self, StoredFit};
 use crate::streams::Streams;
 
@@ -85,6 +85,13 @@ fn of_results(
             continue;
         }
         let file = one.file.display().to_string();
+        if one.file == Path::new(STDIN) {
+            return Err(
+                Error::new("the scan of this result came from standard input, and is gone")
+                    .in_file(name)
+                    .help("give the scan in a file, and fit it anew"),
+            );
+        }
         // A file with many scans is read once.
         let all = match files.entry(one.file.clone()) {
             Entry::Occupied(read) => read.into_mut(),

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::engine::{Material, Model, Values};
 use crate::error::Error;
@@ -23,6 +24,12 @@ pub struct StoredFit {
     pub terms: Option<u8>,
     /// The SHA-256 of each file that it was read from; empty if that is not told, as in tables of version 0.1.
     pub sha256: Vec<String>,
+    /// Number of samples of the fit, and its MSE^2, if they are told.
+    pub samples: Option<f64>,
+    /// See `samples`.
+    pub mse2: Option<f64>,
+    /// What JSON tells of the options it was made with; none of a table, and in results of version 0.1.
+    pub told: Option<Value>,
     /// Its model with its parameters, or why it has none.
     pub material: Result<Material, String>,
 }
@@ -46,18 +53,10 @@ struct Object {
     terms: Option<Vec<String>>,
     parameters: Option<HashMap<String, f64>>,
     error: Option<String>,
+    samples: Option<f64>,
+    mse2: Option<f64>,
     /// Results of version 0.1 have none.
-    provenance: Option<Provenance>,
-}
-
-#[derive(Deserialize)]
-struct Provenance {
-    files: Vec<Hashed>,
-}
-
-#[derive(Deserialize)]
-struct Hashed {
-    sha256: String,
+    provenance: Option<Value>,
 }
 
 fn json(text: &str) -> Option<Vec<StoredFit>> {
@@ -72,13 +71,23 @@ fn json(text: &str) -> Option<Vec<StoredFit>> {
             file: object.file,
             scan: object.scan,
             terms: object.terms.and_then(|names| terms(&names.join(",")).ok()),
-            sha256: object.provenance.map_or_else(Vec::new, |from| {
-                from.files.into_iter().map(|file| file.sha256).collect()
-            }),
+            sha256: object.provenance.as_ref().map_or_else(Vec::new, hashes),
+            samples: object.samples,
+            mse2: object.mse2,
+            told: object.provenance,
             material,
         })
     };
     objects.into_iter().map(fitted).collect()
+}
+
+/// The SHA-256 of each file that a provenance names.
+fn hashes(provenance: &Value) -> Vec<String> {
+    let files = provenance["files"].as_array().into_iter().flatten();
+    files
+        .filter_map(|file| file["sha256"].as_str())
+        .map(String::from)
+        .collect()
 }
 
 fn csv(text: &str) -> Option<Vec<StoredFit>> {
@@ -105,6 +114,9 @@ fn csv(text: &str) -> Option<Vec<StoredFit>> {
             scan: Some(of_cell(row.get(scan)?).to_string()).filter(|scan| !scan.is_empty()),
             terms: cell("terms").and_then(|names| terms(&names.replace('+', ",")).ok()),
             sha256: cell("sha256").map_or_else(Vec::new, |all| all.split_terminator('+').map(String::from).collect()),
+            samples: cell("samples").and_then(|number| number.parse().ok()),
+            mse2: cell("mse2").and_then(|number| number.parse().ok()),
+            told: None,
             material,
         });
     }

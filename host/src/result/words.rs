@@ -158,7 +158,17 @@ pub fn choice(choice: &Choice) -> String {
         let needs = format!("the scene needs {}", term_names(terms).join(", "));
         parts.push(match left_out.is_empty() {
             true => needs + ": every term pays",
-            false => format!("{needs}; the scan gives no evidence for {}", left_out.join(", ")),
+            false => {
+                let (they, are) = if left_out.len() == 1 {
+                    ("it", "is")
+                } else {
+                    ("they", "are")
+                };
+                let names = left_out.join(", ");
+                format!(
+                    "{needs}; the scan gives no evidence for {names}, and values and errors hold if {they} {are} absent"
+                )
+            }
         });
     }
     parts.join("; ")

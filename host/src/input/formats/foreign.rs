@@ -62,6 +62,8 @@ pub fn named(file: &[u8]) -> Option<Error> {
         xml(head)
     } else if is_json(head) {
         json(head)
+    } else if begins("file,scan,") && first.contains(",mse2,") {
+        result()
     } else if begins("!!") {
         (
             "this looks like a BSDF of RPC Photonics, which is not read".to_string(),
@@ -104,6 +106,14 @@ fn xml(head: &str) -> (String, &'static str) {
     (what.to_string(), "export the measurement as CSV text")
 }
 
+/// JSON and tables that brdfit has made.
+fn result() -> (String, &'static str) {
+    (
+        "this is a result of brdfit, and no measurement".to_string(),
+        "give the scan that was fitted, or a whole result of fit or batch to brdfit export, report or certify",
+    )
+}
+
 /// True of what begins like JSON; `[Header]` and `[deg]` do not.
 fn is_json(head: &str) -> bool {
     let inside = |mark: char| head.strip_prefix(mark).map(str::trim_start);
@@ -115,11 +125,8 @@ fn is_json(head: &str) -> bool {
 }
 
 fn json(head: &str) -> (String, &'static str) {
-    if head.contains("\"parameters\"") && head.contains("\"rho_d\"") {
-        return (
-            "this is a result of brdfit, and no measurement".to_string(),
-            "give the scan that was fitted, or this to brdfit export",
-        );
+    if head.contains("\"parameters\"") && (head.contains("\"rho_d\"") || head.contains("\"mse2\"")) {
+        return result();
     }
     (
         "this is JSON, but neither a BiRD nor an OpenMATERIAL BRDF".to_string(),
@@ -172,6 +179,7 @@ mod tests {
             (b"\n <a>\n", "XML of a kind"),
             (b"{\"a\": 1}", "neither a BiRD nor an OpenMATERIAL"),
             (b"[{\"parameters\": {\"rho_d\": 1}}]", "a result of brdfit"),
+            (b"file,scan,model,samples,mse2,rho_d\n", "a result of brdfit"),
             (b"!! x\n!! y\n1 2 3\n", "RPC Photonics"),
             (
                 b"' x\nSub Main\n    Dim lobe As T_ABGSCATTER\n    InitAbgScatter lobe\n",

@@ -62,9 +62,11 @@ fn wanted() -> Wanted {
 
 /// The budget over so many runs.
 fn experiment(first: u64, runs: u64, effect: f64) -> Vec<Quantity> {
-    let fitted = |seed: u64| fit(&measurement("run", &run(seed, effect)), &wanted()).expect("a fit");
-    let fits: Vec<FittedScan> = (first..first + runs).map(fitted).collect();
-    quantities(&fits, 0.0)
+    let all: Vec<Measurement> = (first..first + runs)
+        .map(|seed| measurement("run", &run(seed, effect)))
+        .collect();
+    let fits: Vec<FittedScan> = all.iter().map(|one| fit(one, &wanted()).expect("a fit")).collect();
+    quantities(&all, &fits, 0.0)
 }
 
 #[test]
@@ -76,8 +78,9 @@ fn intervals_over_runs_hold_the_actual_values() {
             .map(|theta_s| Sample::in_plane(30f64.to_radians(), f64::from(theta_s).to_radians(), 1.0))
             .collect();
         let clean = copy(&grid, &Material::paper(ACTUAL), 0.0, &mut Noise::new(0, 0));
-        let fitted = fit(&measurement("exact", &table(&clean)), &wanted()).expect("a fit");
-        quantities(&[fitted.clone(), fitted], 0.0)
+        let exact = measurement("exact", &table(&clean));
+        let fitted = fit(&exact, &wanted()).expect("a fit");
+        quantities(&[exact.clone(), exact], &[fitted.clone(), fitted], 0.0)
     };
     for (runs, effect) in [(3, 1.0), (5, 1.0), (4, 0.0)] {
         let all: Vec<Vec<Quantity>> = (0..EXPERIMENTS)
@@ -107,6 +110,38 @@ fn intervals_over_runs_hold_the_actual_values() {
             }
         }
     }
+}
+
+/// A prior is the same in all runs: it is in the error of their mean as it is in that of each.
+#[test]
+fn a_prior_is_in_the_budget() {
+    let folder = TempDir::new().unwrap();
+    let files = [1, 2, 3].map(|seed| write(&folder, &format!("run{seed}.csv"), run(seed, 0.0)));
+    let fixed = ["--terms", "diffuse,surface", "--prior", "n=1.48+-0.02"];
+    let read = |arguments: &[&str]| -> Value {
+        let output = brdfit(&[arguments, &fixed, &["--format", "json"]].concat(), b"").output;
+        serde_json::from_str(&output).unwrap()
+    };
+    let alone = read(&["fit", &files[0]]);
+    let all = read(&["joint", "--repeats", &files[0], &files[1], &files[2]]);
+    let budget = |name: &str| {
+        let quantities = all["quantities"].as_array().unwrap();
+        let one = quantities.iter().find(|one| one["name"] == name).unwrap();
+        ["type_b", "within"].map(|part| one["budget"][part].as_f64().unwrap())
+    };
+    for name in ["n", "rho_s"] {
+        let [type_b, within] = budget(name);
+        let error = alone["uncertainty"]["stderr"][name].as_f64().unwrap();
+        println!("{name}: type B {type_b}, within {within}, error of one run {error}");
+        assert!(type_b < error && type_b > 0.8 * error, "{name}: {type_b} of {error}");
+        assert!((type_b.hypot(within) / error - 1.0).abs() < 0.2, "{name}: {within}");
+    }
+    // It tells nothing of rho_s F.
+    assert!(budget("rho_s F")[0] < 0.1 * budget("rho_s F")[1]);
+    let runs = ["joint", "--repeats", &files[0], &files[1], &files[2]];
+    let page = brdfit(&[&runs[..], &fixed].concat(), b"");
+    let sentence = "which are the same in all runs, makes of each quantity: n = 1.48 +- 0.02.";
+    assert!(page.output.contains(sentence), "{}{}", page.errors, page.output);
 }
 
 #[test]
@@ -236,19 +271,22 @@ fn measured_runs_agree_within_the_budget() {
             assert!(away <= budget["expanded"].as_f64().unwrap(), "{quantity}");
         }
     }
-    // Where they are apart by more than both tell of themselves, it is said of which.
-    let at_70 = found["quantities"].as_array().unwrap().iter();
+    // A spread that is unlikely in one quantity is none of all of them together.
+    let all = found["quantities"].as_array().unwrap();
+    let at_70 = all.iter();
     let at_70 = at_70.filter(|one| one["name"] == "reflectance" && one["theta_i_deg"] == 70.0);
     for quantity in at_70.clone() {
-        assert_eq!(quantity["runs_that_disagree"], serde_json::json!([1, 2]));
+        let by_chance = quantity["budget"]["by_chance"].as_f64().unwrap();
+        assert!(by_chance < 0.05 && by_chance * all.len() as f64 > 0.05, "{by_chance}");
+        assert_eq!(quantity["runs_that_disagree"], serde_json::json!([]));
     }
     assert_eq!(at_70.count(), 1);
     let text = brdfit(&["joint", "--repeats", &files[0], &files[1]], b"").output;
-    let line = text.lines().find(|line| line.contains("do not agree with each other"));
-    assert!(
-        line.is_some_and(|line| line.contains("reflectance at 70 deg")),
-        "{text}"
+    let level = format!(
+        "no more than their own errors (F test, 5 % for all {} quantities together)",
+        all.len()
     );
+    assert!(text.contains(&level) && text.contains("All runs agree"), "{text}");
     // rho_d is told by both, and differs.
     let rho_d = &found["quantities"][0];
     let (between, within) = (&rho_d["budget"]["between"], &rho_d["budget"]["within"]);

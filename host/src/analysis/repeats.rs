@@ -1,20 +1,25 @@
 //! Runs of one sample, each fitted alone, and the budget of uncertainty over them (JCGM 100:2008, the GUM).
 //!
 //! A single run does not know what changes between runs: the spot, the alignment, the lamp.
-//! The spread of the runs' values holds that and the noise within them, and is evaluated as type A; a calibration that is the same for all runs is type B.
+//! The spread of the runs' values holds that and the noise within them, and is evaluated as type A; what is the same for all runs, a calibration and priors, is type B.
+
+mod priors;
 
 use brdfit_core::uncertainty::Place;
+use rayon::prelude::*;
 
 use super::chance::{above_f, within_t};
 use super::derived::{Derived, Value};
 use super::fit::FittedScan;
 use super::undetermined::undetermined;
+use crate::input::Measurement;
+use priors::Displaced;
 
 /// Confidence of the expanded uncertainty.
 pub const LEVEL: f64 = 0.95;
 /// From so many degrees of freedom on t is normal in all its digits that are printed.
 const MANY: f64 = 1e6;
-/// A spread or a run is out of the ordinary at this probability.
+/// A spread or a run is out of the ordinary at this probability, for all quantities of a budget together (Bonferroni).
 const UNLIKELY: f64 = 0.05;
 
 /// One quantity over all runs.
@@ -43,11 +48,11 @@ pub struct Budget {
     pub between: f64,
     /// Root of the mean square of the standard errors from within the runs.
     pub within: f64,
-    /// Probability of such a spread by chance, if nothing changed between runs.
+    /// Probability of such a spread of this quantity by chance, if nothing changed between runs.
     pub by_chance: f64,
     /// Standard uncertainty of the mean by statistics (type A), over one degree of freedom less than runs.
     pub type_a: f64,
-    /// That of what all runs have in common (type B): the calibration, and what the lobe that the samples show has of another shape than the model's.
+    /// That of what all runs have in common (type B): the calibration, priors, and what the lobe that the samples show has of another shape than the model's.
     pub type_b: f64,
     /// Combined standard uncertainty.
     pub combined: f64,
@@ -59,6 +64,8 @@ pub struct Budget {
     pub expanded: f64,
     /// The run that stands apart from the others, by Grubbs's test; never one of two.
     pub apart: Option<usize>,
+    /// Quantities of the budget, for all of which the level of the tests holds together.
+    pub quantities: usize,
 }
 
 /// What one run gives, and how well.
@@ -73,34 +80,47 @@ pub struct Told {
 impl Budget {
     /// Is the spread of the runs more than their own errors explain?
     pub fn differs(&self) -> bool {
-        self.by_chance < UNLIKELY
+        self.by_chance < UNLIKELY / self.quantities as f64
     }
 }
 
-/// Over two runs or more; `calibration` is the relative standard uncertainty of a factor that all runs have in common, and which `fits` do not count.
-pub fn quantities(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
+/// Over two runs or more, as they were read and fitted; `calibration` is the relative standard uncertainty of a factor that all runs have in common, and which `fits` do not count.
+pub fn quantities(measurements: &[Measurement], fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
+    let displaced = measurements.par_iter().zip(fits);
+    let displaced: Vec<Displaced> = displaced
+        .map(|(measurement, fit)| Displaced::of(measurement, fit))
+        .collect();
     let open: Vec<Vec<&str>> = fits.iter().map(open).collect();
     let Some(first) = fits.first() else { return Vec::new() };
     let model = first.outcome.model;
     let parameters = first.options.free().map(|place| {
         let parameter = &model.parameters[place];
-        let value = |(fit, open): (&FittedScan, &Vec<&str>)| {
+        let moved: Vec<Vec<f64>> = displaced.iter().map(|run| run.parameter(place)).collect();
+        let value = |((fit, open), moved): ((&FittedScan, &Vec<&str>), &Vec<f64>)| {
             let known = &fit.outcome.uncertainty;
             let inside = known.places[place] == Some(Place::Inside) && !open.contains(&parameter.name);
             inside.then(|| Value {
                 value: fit.outcome.params[place],
-                stderr: known.stderr[place],
+                stderr: priors::without(known.stderr[place], moved),
             })
         };
         let common = Common {
             relative: if parameter.is_weight() { calibration } else { 0.0 },
-            absolute: 0.0,
+            absolute: priors::of_mean(&moved),
         };
-        let runs = fits.iter().zip(&open).map(value).collect();
-        quantity(fits, parameter.name.into(), parameter.unit, None, runs, common)
+        let runs = fits.iter().zip(&open).zip(&moved).map(value).collect();
+        Seen {
+            name: parameter.name,
+            unit: parameter.unit,
+            theta_i: None,
+            runs,
+            common,
+        }
     });
-    let parameters: Vec<Quantity> = parameters.collect();
-    parameters.into_iter().chain(derived(fits, calibration)).collect()
+    let mut seen: Vec<Seen> = parameters.collect();
+    seen.extend(derived(fits, &displaced, calibration));
+    let count = seen.len();
+    seen.into_iter().map(|one| quantity(fits, one, count)).collect()
 }
 
 /// Parameters that a run does not determine.
@@ -110,13 +130,9 @@ fn open(fit: &FittedScan) -> Vec<&'static str> {
 }
 
 /// What is derived at the angles of incidence that all runs have.
-fn derived(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
+fn derived(fits: &[FittedScan], displaced: &[Displaced], calibration: f64) -> Vec<Seen> {
     // With what of the error is the model's, the same in all runs.
     type Of = fn(&Derived) -> Option<(Value, f64)>;
-    let degrees = |value: Value| Value {
-        value: value.value.to_degrees(),
-        stderr: value.stderr.to_degrees(),
-    };
     let kinds: [(&str, &'static str, Of, f64); 5] = [
         ("rho_s F", "", |at| Some((at.rho_s_f?, 0.0)), calibration),
         ("rho_v F", "", |at| Some((at.rho_v_f?, 0.0)), calibration),
@@ -143,42 +159,62 @@ fn derived(fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
         let everywhere: Option<Vec<&Derived>> = fits.iter().map(|fit| fit.derived.iter().find(same)).collect();
         let Some(everywhere) = everywhere else { continue };
         for (name, unit, of, scaled) in kinds {
-            let value = |at: &&Derived| {
+            let in_unit = |of_angle: f64| if unit == "deg" { of_angle.to_degrees() } else { of_angle };
+            let moves = |run: &Displaced| run.derived(at.theta_i, |at| Some(in_unit(of(at)?.0.value)));
+            let moved: Vec<Vec<f64>> = displaced.iter().map(moves).collect();
+            let value = |(at, moved): (&&Derived, &Vec<f64>)| {
                 let (value, of_model) = of(at)?;
                 let told = value.stderr.is_finite() && value.stderr < value.value;
+                let statistical = (value.stderr * value.stderr - of_model * of_model).max(0.0).sqrt();
                 let statistical = Value {
-                    stderr: (value.stderr * value.stderr - of_model * of_model).max(0.0).sqrt(),
-                    ..value
+                    value: in_unit(value.value),
+                    stderr: priors::without(in_unit(statistical), moved),
                 };
-                told.then_some(match unit {
-                    "deg" => (degrees(statistical), of_model.to_degrees()),
-                    _ => (statistical, of_model),
-                })
+                told.then_some((statistical, in_unit(of_model)))
             };
-            let told: Vec<Option<(Value, f64)>> = everywhere.iter().map(value).collect();
+            let told: Vec<Option<(Value, f64)>> = everywhere.iter().zip(&moved).map(value).collect();
             let of_model: Vec<f64> = told.iter().flatten().map(|told| told.1).collect();
             if !of_model.is_empty() {
                 let theta_i = (at.theta_i.to_degrees() * 1e9).round() / 1e9;
                 let common = Common {
                     relative: scaled,
-                    absolute: of_model.iter().sum::<f64>() / of_model.len() as f64,
+                    absolute: libm::hypot(
+                        of_model.iter().sum::<f64>() / of_model.len() as f64,
+                        priors::of_mean(&moved),
+                    ),
                 };
                 let runs = told.into_iter().map(|told| Some(told?.0)).collect();
-                all.push(quantity(fits, name.into(), unit, Some(theta_i), runs, common));
+                all.push(Seen {
+                    name,
+                    unit,
+                    theta_i: Some(theta_i),
+                    runs,
+                    common,
+                });
             }
         }
     }
     all
 }
 
-fn quantity(
-    fits: &[FittedScan],
-    name: String,
+/// What the runs tell of one quantity.
+struct Seen {
+    name: &'static str,
     unit: &'static str,
     theta_i: Option<f64>,
     runs: Vec<Option<Value>>,
     common: Common,
-) -> Quantity {
+}
+
+/// One of so many in the budget.
+fn quantity(fits: &[FittedScan], seen: Seen, quantities: usize) -> Quantity {
+    let Seen {
+        name,
+        unit,
+        theta_i,
+        runs,
+        common,
+    } = seen;
     let told = runs.iter().zip(fits).map(|(run, fit)| {
         Some(Told {
             value: (*run)?,
@@ -188,9 +224,9 @@ fn quantity(
     let told: Vec<Option<Told>> = told.collect();
     let all: Option<Vec<Told>> = told.iter().copied().collect();
     Quantity {
-        budget: all.and_then(|values| budget(&values, common)),
-        disagree: disagreeing(&told),
-        name,
+        budget: all.and_then(|values| budget(&values, common, quantities)),
+        disagree: disagreeing(&told, quantities),
+        name: name.into(),
         unit,
         theta_i,
         runs,
@@ -199,14 +235,14 @@ fn quantity(
 
 /// The runs that do not agree with most others; all of two that do not agree with each other.
 ///
-/// Two runs agree if their difference is within the root of the sum of their squared expanded errors (E_n of ISO 13528 at most 1), of 95 % for all pairs together.
+/// Two runs agree if their difference is within the root of the sum of their squared expanded errors (E_n of ISO 13528 at most 1), of 95 % for all pairs of runs and all of so many quantities together.
 /// The runs that most others agree with are kept, one by one, as long as they agree with those kept.
-pub fn disagreeing(runs: &[Option<Told>]) -> Vec<usize> {
+pub fn disagreeing(runs: &[Option<Told>], quantities: usize) -> Vec<usize> {
     let told: Vec<(usize, Told)> = (0..runs.len())
         .filter_map(|place| Some((place, runs[place]?)))
         .collect();
-    let pairs = 0.5 * told.len() as f64 * (told.len() as f64 - 1.0);
-    let expanded = |run: &Told| student(1.0 - UNLIKELY / pairs, run.degrees_of_freedom) * run.value.stderr;
+    let tests = 0.5 * told.len() as f64 * (told.len() as f64 - 1.0) * quantities as f64;
+    let expanded = |run: &Told| student(1.0 - UNLIKELY / tests, run.degrees_of_freedom) * run.value.stderr;
     let agree = |a: &Told, b: &Told| {
         let away = (a.value.value - b.value.value).abs();
         !(away > libm::hypot(expanded(a), expanded(b)))
@@ -240,8 +276,8 @@ pub struct Common {
     pub absolute: f64,
 }
 
-/// Of two values or more.
-pub fn budget(told: &[Told], common: Common) -> Option<Budget> {
+/// Of two values or more of one of so many quantities.
+pub fn budget(told: &[Told], common: Common, quantities: usize) -> Option<Budget> {
     if told.len() < 2 {
         return None;
     }
@@ -275,19 +311,20 @@ pub fn budget(told: &[Told], common: Common) -> Option<Budget> {
         degrees_of_freedom,
         coverage,
         expanded: coverage * combined,
-        apart: grubbs(values, mean, between),
+        apart: grubbs(values, mean, between, quantities),
+        quantities,
     })
 }
 
-/// The run that is farthest from the mean, if it is farther than one of as many normal ones is in 95 % of cases (Grubbs 1969; ISO 5725-2).
-fn grubbs(values: &[Value], mean: f64, deviation: f64) -> Option<usize> {
+/// The run that is farthest from the mean, if it is farther than one of as many normal ones is in 95 % of cases for all of so many quantities together (Grubbs 1969; ISO 5725-2).
+fn grubbs(values: &[Value], mean: f64, deviation: f64, quantities: usize) -> Option<usize> {
     let count = values.len() as f64;
     if values.len() < 3 {
         return None;
     }
     let away = |place: &usize| (values[*place].value - mean).abs();
     let farthest = (0..values.len()).max_by(|a, b| away(a).total_cmp(&away(b)))?;
-    let t = student(1.0 - UNLIKELY / count, count - 2.0);
+    let t = student(1.0 - UNLIKELY / (count * quantities as f64), count - 2.0);
     let limit = (count - 1.0) / count.sqrt() * (t * t / (count - 2.0 + t * t)).sqrt();
     (away(&farthest) > limit * deviation).then_some(farthest)
 }
@@ -313,7 +350,7 @@ mod tests {
     fn runs_that_do_not_agree_are_those_beyond_their_expanded_errors() {
         let of = |list: &[f64], stderr: f64| {
             let told: Vec<Option<Told>> = values(list, stderr).into_iter().map(Some).collect();
-            disagreeing(&told)
+            disagreeing(&told, 1)
         };
         // t of 100 degrees of freedom is 1.984 for a pair, and 2.43 of three.
         let edge = 1.984 * f64::sqrt(2.0) * 0.01;
@@ -326,9 +363,9 @@ mod tests {
         // A run that tells nothing is not asked, and one degree of freedom says little.
         let mut told: Vec<Option<Told>> = values(&[1.0, 1.0, 1.05], 0.01).into_iter().map(Some).collect();
         told[0] = None;
-        assert_eq!(disagreeing(&told), [1, 2]);
+        assert_eq!(disagreeing(&told, 1), [1, 2]);
         told.iter_mut().flatten().for_each(|run| run.degrees_of_freedom = 1.0);
-        assert!(disagreeing(&told).is_empty());
+        assert!(disagreeing(&told, 1).is_empty());
     }
 
     #[test]
@@ -339,7 +376,7 @@ mod tests {
             relative: 0.01,
             absolute: 0.0,
         };
-        let found = budget(&all, calibration).unwrap();
+        let found = budget(&all, calibration, 1).unwrap();
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
         close(found.mean, 10.05);
         close(found.between, 0.129_099);
@@ -355,26 +392,44 @@ mod tests {
             absolute: 0.2,
             ..calibration
         };
-        close(budget(&all, both).unwrap().type_b, 0.223_832);
+        close(budget(&all, both, 1).unwrap().type_b, 0.223_832);
         // Without a calibration t has one degree of freedom less than there are runs.
-        close(budget(&all, Common::default()).unwrap().coverage, 3.182_4);
-        close(budget(&all[..2], Common::default()).unwrap().coverage, 12.706_2);
-        assert_eq!(budget(&all[..1], Common::default()), None);
+        close(budget(&all, Common::default(), 1).unwrap().coverage, 3.182_4);
+        close(budget(&all[..2], Common::default(), 1).unwrap().coverage, 12.706_2);
+        assert_eq!(budget(&all[..1], Common::default(), 1), None);
     }
 
     #[test]
     fn one_run_of_many_can_stand_apart() {
         // Grubbs's limit for six values is 1.887.
-        let apart = |last: f64| budget(&values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01), Common::default()).unwrap();
+        let apart = |last: f64| {
+            budget(
+                &values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01),
+                Common::default(),
+                1,
+            )
+            .unwrap()
+        };
         assert_eq!(apart(1.2).apart, Some(5));
         assert_eq!(apart(1.03).apart, None);
         // Of two nobody knows which.
         assert_eq!(
-            budget(&values(&[1.0, 2.0], 0.01), Common::default()).unwrap().apart,
+            budget(&values(&[1.0, 2.0], 0.01), Common::default(), 1).unwrap().apart,
             None
         );
+        // Of ten quantities together the limit is 1.990, by Student's t of 4 degrees of freedom at 0.05 / 60.
+        let of_ten = |last: f64| {
+            let all = values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01);
+            budget(&all, Common::default(), 10).unwrap()
+        };
+        assert_eq!((apart(1.06).apart, of_ten(1.06).apart), (Some(5), None));
+        assert_eq!(of_ten(1.2).apart, Some(5));
+        // A spread of 2 standard errors of four runs is of a chance of 0.8 %: seldom in one quantity, not in one of ten.
+        let wide = values(&[1.0, 1.02, 0.98, 1.037], 0.0125);
+        let differs = |quantities| budget(&wide, Common::default(), quantities).unwrap().differs();
+        assert!(differs(1) && !differs(10));
         assert!(
-            !budget(&values(&[1.0, 1.01], 0.01), Common::default())
+            !budget(&values(&[1.0, 1.01], 0.01), Common::default(), 1)
                 .unwrap()
                 .differs()
         );

@@ -182,7 +182,7 @@ fn run_repeats(arguments: &Arguments, given: &[OsString], streams: &mut Streams)
     let found = repeats::Found {
         options: &options,
         measurements: &measurements,
-        quantities: quantities(&fits, calibration),
+        quantities: pool.install(|| quantities(&measurements, &fits, calibration)),
         fits: &fits,
         calibration,
     };

@@ -57,7 +57,7 @@ fn budgets(found: &Found) -> Markup {
     };
     html! {
         table {
-            caption { "The budget (JCGM 100:2008). Between: standard deviation of the runs; within: of one run by its own residuals; type A: standard uncertainty of the mean by the spread of the runs; type B: that of the calibration, and of what the lobe that the samples show has of another shape than the model's; the expanded uncertainty is k times the combined one, with so many effective degrees of freedom." }
+            caption { "The budget (JCGM 100:2008). Between: standard deviation of the runs; within: of one run by its own residuals; type A: standard uncertainty of the mean by the spread of the runs; type B: that of the calibration, of priors, and of what the lobe that the samples show has of another shape than the model's; the expanded uncertainty is k times the combined one, with so many effective degrees of freedom." }
             thead { tr {
                 th.text { "quantity" } th { "mean" } th { "between" } th { "within" } th { "type A" } th { "type B" }
                 th { "combined" } th { "degrees" } th { i { "k" } } th { "expanded" }

@@ -60,7 +60,8 @@ pub fn lines(fit: &FittedScan) -> Vec<(&'static str, String)> {
     lines
 }
 
-fn priors(options: &FitOptions) -> String {
+/// The priors that take part, with commas between; empty without any.
+pub fn priors(options: &FitOptions) -> String {
     let each = options.with_prior().filter_map(|place| {
         let prior = options.instrument.priors[place]?;
         let name = options.model.parameters[place].name;

@@ -9,6 +9,7 @@ use crate::document;
 use crate::engine::FitOptions;
 use crate::input::Measurement;
 use crate::number::{four, percent, six, two};
+use crate::result::beside;
 use crate::result::json::provenance::{Provenance, provenance};
 use crate::terms::term_names;
 
@@ -109,6 +110,10 @@ pub fn verdict(found: &Found) -> Vec<String> {
             .iter()
             .filter_map(|one| Some((one, one.budget.as_ref()?)))
     };
+    let level = match found.quantities.len() {
+        1 => "5 %".to_string(),
+        several => format!("5 % for all {several} quantities together"),
+    };
     let mut lines = vec![format!(
         "Mean +- expanded holds the value with {:.0} %: k is Student's t for the effective degrees of freedom. Between: standard deviation of the runs; within: of one run by its own residuals.",
         100.0 * LEVEL
@@ -119,10 +124,17 @@ pub fn verdict(found: &Found) -> Vec<String> {
             percent(found.calibration)
         ));
     }
+    let priors = beside::priors(found.options);
+    if !priors.is_empty() {
+        lines.push(format!(
+            "Type B holds what the uncertainty of the priors, which are the same in all runs, makes of each quantity: {priors}."
+        ));
+    }
     let lobe = found.quantities.iter().find(|one| one.name == "width");
     if lobe
         .and_then(|one| one.budget.as_ref())
         .is_some_and(|budget| budget.type_b > 0.0)
+        && found.fits.iter().any(from_data)
     {
         lines.push("Type B of peak and width holds what the lobe that the samples show has of another shape than the model's, which is alike in all runs.".into());
     }
@@ -146,9 +158,12 @@ pub fn verdict(found: &Found) -> Vec<String> {
         lines.push(format!("{runs}: no residual tells of errors, so that {have} none from within, and nothing tells whether the runs differ by more than that."));
     } else {
         lines.push(if more.is_empty() {
-            "The runs differ by no more than their own errors.".into()
+            format!("The runs differ by no more than their own errors (F test, {level}).")
         } else {
-            format!("The runs differ by more than their own errors: {}.", more.join(", "))
+            format!(
+                "The runs differ by more than their own errors (F test, {level}): {}.",
+                more.join(", ")
+            )
         });
         lines.extend(disagreement(found));
     }
@@ -157,13 +172,19 @@ pub fn verdict(found: &Found) -> Vec<String> {
         .collect();
     lines.push(match found.fits.len() {
         2 => "Of two runs no test tells which is off.".into(),
-        _ if apart.is_empty() => "No run stands apart from the others (Grubbs's test, 5 %).".into(),
+        _ if apart.is_empty() => format!("No run stands apart from the others (Grubbs's test, {level})."),
         _ => format!(
-            "Stands apart from the others (Grubbs's test, 5 %): {}.",
+            "Stands apart from the others (Grubbs's test, {level}): {}.",
             apart.join(", ")
         ),
     });
     lines
+}
+
+/// Does a run count what its samples show of a lobe?
+fn from_data(fit: &FittedScan) -> bool {
+    let peaks = fit.derived.iter().filter_map(|at| at.peak.as_ref());
+    peaks.into_iter().any(|peak| peak.from_data.is_some())
 }
 
 /// Which runs do not agree within their expanded errors, and in what: one sentence for each set of runs.
@@ -233,7 +254,7 @@ struct JsonBudget {
     mean: f64,
     between: f64,
     within: f64,
-    /// Probability of such a spread if nothing changed between runs; null where a run is exact and has no errors.
+    /// Probability of such a spread of this quantity if nothing changed between runs; null where a run is exact and has no errors.
     by_chance: Option<f64>,
     type_a: f64,
     type_b: f64,

@@ -1,6 +1,6 @@
 //! The calibration of f, and the energy that it allows.
 
-use super::{PLACE_M, PLACE_N, dielectric, fit, grid, noisy, options};
+use super::{PLACE_M, PLACE_N, all_terms, dielectric, fit, grid, noisy, options};
 use brdfit::analysis::bootstrap::Noise;
 use brdfit::analysis::derived;
 use brdfit::analysis::profile::hold::hold;
@@ -106,4 +106,21 @@ fn energy_is_conserved_at_the_least_cost() {
     };
     let refuted = hold(&samples, &bound, &held, 0, 1.0).unwrap();
     assert_eq!(refuted.cost, f64::INFINITY);
+}
+
+/// A scan that is far too bright is held by weights that are lower, and not by an index at its bound.
+#[test]
+fn energy_of_a_scan_that_is_far_too_bright_is_conserved_at_the_least_cost() {
+    let bright = Material::paper([0.9, 2.5, 0.0, 0.15, 1.6, 0.5]);
+    let samples = noisy(&bright, &grid(&[20.0, 50.0], 4, 80), 0.03, 5);
+    let costs = [0, 3].map(|seed| {
+        let options = all_terms(|options| {
+            options.instrument.limit = Some(ENERGY);
+            options.seed = seed;
+        });
+        let outcome = fit(&samples, &options);
+        assert!(outcome.stop.converged());
+        outcome.cost
+    });
+    assert!((costs[0] / costs[1] - 1.0).abs() < 1e-3, "{costs:?}");
 }

@@ -9,7 +9,7 @@ use crate::instrument::moved::{all_moved, allowed};
 use crate::instrument::{Offset, View};
 use crate::options::FitOptions;
 use crate::outcome::Outcome;
-use crate::search::beside::is_above;
+use crate::search::beside::{darkened, is_above};
 use crate::search::setup::{LEAST, Setup, WALLS};
 use crate::search::{nuisance, offset};
 use crate::values::Values;
@@ -107,7 +107,9 @@ fn at(samples: &[Sample<f64>], options: &FitOptions, nuisance: bool, known: &[Va
         let cost = outcome.cost;
         let kept = setup.wall(cost, |setup| {
             if setup.steep > 0.0 {
-                match run(samples, options, setup, &[outcome.params]) {
+                // Before the wall, what is darker by a factor is a better start than what the wall has to push down.
+                let darker = darkened(options, outcome.params, samples);
+                match run(samples, options, setup, &[outcome.params, darker]) {
                     Ok(found) => outcome = found,
                     Err(error) => failed = Err(error),
                 }

@@ -129,18 +129,35 @@ pub fn angles(samples: &[Sample<f64>]) -> Vec<f64> {
     angles
 }
 
-/// Is what is limited above 1 at an angle of incidence of the samples?
-pub fn is_above(options: &FitOptions, values: Values, samples: &[Sample<f64>]) -> bool {
+/// The most of what is limited over the angles of incidence of the samples; 0 if nothing is.
+fn most(options: &FitOptions, values: Values, samples: &[Sample<f64>]) -> f64 {
     let material = Material {
         model: options.model,
         values,
     };
     let Some(Limit(of)) = options.instrument.limit else {
-        return false;
+        return 0.0;
     };
-    angles(samples)
-        .into_iter()
-        .any(|theta_i| of(&material, theta_i).0 > 1.0)
+    let each = angles(samples).into_iter().map(|theta_i| of(&material, theta_i).0);
+    each.fold(0.0, f64::max)
+}
+
+/// Is what is limited above 1 at an angle of incidence of the samples?
+pub fn is_above(options: &FitOptions, values: Values, samples: &[Sample<f64>]) -> bool {
+    most(options, values, samples) > 1.0
+}
+
+/// These values with weights so much lower that what is limited is at most 1.
+pub fn darkened(options: &FitOptions, values: Values, samples: &[Sample<f64>]) -> Values {
+    let most = most(options, values, samples).max(1.0);
+    let parameters = options.model.parameters;
+    Values::from_fn(values.len(), |place| {
+        if parameters[place].is_weight() {
+            values[place] / most
+        } else {
+            values[place]
+        }
+    })
 }
 
 /// A scan with further residuals beside it.

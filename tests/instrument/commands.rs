@@ -131,6 +131,79 @@ fn misread(folder: &TempDir, name: &str, signs: [[f64; 2]; 2], off: f64) -> Stri
 }
 
 #[test]
+fn texts_tell_what_took_part() {
+    let folder = TempDir::new().unwrap();
+    let file = scan(&folder);
+    let run = |seed: u64| {
+        let samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 4, 80), 0.02, seed);
+        let row = |sample: &Sample<f64>| {
+            let (theta_i, theta_s) = (sample.theta_i.to_degrees(), sample.theta_s.to_degrees() + 0.5);
+            format!("{theta_i},{theta_s},{}\n", sample.brdf)
+        };
+        let table: String = samples.iter().map(row).collect();
+        let name = format!("run{seed}.csv");
+        write(&folder, &name, format!("theta_i_deg,theta_s_deg,brdf_per_sr\n{table}"))
+    };
+    let other = run(6);
+    let words = ["n = 1.5 +- 0.02", "a calibration known to 3.0 % is part of the errors"];
+    for command in [
+        &["profile", file.as_str(), "--parameter", "m"][..],
+        &["joint", &file, &other],
+    ] {
+        let page = succeed(
+            &[
+                command,
+                &[
+                    "--terms",
+                    "diffuse,surface",
+                    "--prior",
+                    "n=1.50+-0.02",
+                    "--scale-uncertainty",
+                    "3%",
+                    "--robust",
+                ],
+            ]
+            .concat(),
+        );
+        for words in words.iter().chain(&["robust  "]) {
+            assert!(page.contains(words), "{words}: {page}");
+        }
+    }
+    let page = succeed(&[
+        "profile",
+        &file,
+        "--parameter",
+        "m",
+        "--terms",
+        "diffuse,surface",
+        "--fix",
+        "n=1.5",
+        "--fit-offset",
+    ]);
+    assert!(page.contains("offset     theta_s reads 0."), "{page}");
+    let runs = [
+        "joint",
+        "--repeats",
+        &file,
+        &other,
+        "--terms",
+        "diffuse,surface",
+        "--fix",
+        "n=1.5",
+        "--fit-offset",
+    ];
+    let page = succeed(&runs);
+    assert_eq!(page.matches("offset   theta_s reads 0.").count(), 2, "{page}");
+    for run in json(&runs)["runs"].as_array().unwrap() {
+        let number = |name: &str| run[name].as_f64().unwrap();
+        assert!(
+            (number("offset_deg") - 0.5).abs() < 4.0 * number("offset_stderr_deg"),
+            "{run}"
+        );
+    }
+}
+
+#[test]
 fn an_offset_is_that_of_theta_s_in_the_file() {
     let folder = TempDir::new().unwrap();
     let fixed = ["--terms", "diffuse,surface", "--fix", "n=1.5", "--fit-offset"];

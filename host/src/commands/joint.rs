@@ -27,7 +27,7 @@ use crate::page::{budget, provenance};
 use crate::parameters::parameter;
 use crate::result::json::provenance::provenance as of_input;
 use crate::result::json::{ByName, Correlated};
-use crate::result::{repeats, words};
+use crate::result::{beside, repeats, words};
 use crate::streams::Streams;
 use crate::terms::term_names;
 
@@ -276,6 +276,8 @@ fn text(fits: &Fits, measurements: &[Measurement], by: By, absent: &[&str]) -> S
         rms(fitted.separate)
     ));
     lines.extend(counted(by, measurements.len()).map(|line| format!("  {line}")));
+    let beside = beside::of_joint(options).into_iter();
+    lines.extend(beside.map(|(about, what)| format!("  {about:<9}  {what}")));
     if let Some(chi2) = known.chi2 {
         let verdict = known.verdict.map_or_else(String::new, words::deviations);
         let degrees = fitted.degrees_of_freedom;

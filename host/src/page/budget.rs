@@ -5,10 +5,12 @@ use maud::{Markup, html};
 use super::html::{document, minus, model, number, symbol};
 use super::provenance;
 use crate::analysis::derived::Value;
+use crate::analysis::fit::FittedScan;
 use crate::analysis::repeats::{Budget, Quantity};
 use crate::input::left_out;
 use crate::number::{four, percent, two};
 use crate::plain::plain;
+use crate::result::beside;
 use crate::result::repeats::{Found, missing, name, verdict};
 use crate::result::words::shown;
 use crate::terms::term_names;
@@ -82,7 +84,7 @@ fn runs(found: &Found) -> Markup {
     html! {
         table {
             caption { "The runs." }
-            thead { tr { th { "run" } th.text { "scan" } th { "samples" } th { "rms of ln " i { "f" } } th.text { "left out" } } }
+            thead { tr { th { "run" } th.text { "scan" } th { "samples" } th { "rms of ln " i { "f" } } th.text { "left out" } th.text { "beside the samples" } } }
             tbody {
                 @for (place, (measurement, fit)) in found.measurements.iter().zip(found.fits).enumerate() { tr {
                     td { (place + 1) }
@@ -90,10 +92,20 @@ fn runs(found: &Found) -> Markup {
                     td { (fit.outcome.samples) }
                     td { (percent(fit.outcome.rms_ln)) }
                     td.text { (left_out::summary(&fit.left_out).unwrap_or_else(|| "–".into())) }
+                    td.text { (beside(fit)) }
                 } }
             }
         }
     }
+}
+
+/// What took part in a run beside its samples.
+fn beside(fit: &FittedScan) -> String {
+    let lines = beside::lines(fit).into_iter().chain(beside::robust(&fit.outcome));
+    let all: Vec<String> = lines
+        .map(|(about, what)| minus(&format!("{about}: {what}").replace("+-", "±")))
+        .collect();
+    if all.is_empty() { "–".into() } else { all.join("; ") }
 }
 
 /// What each run gives.

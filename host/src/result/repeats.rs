@@ -43,6 +43,8 @@ pub fn text(found: &Found) -> String {
             fit.outcome.samples,
             fit.outcome.rms_ln
         ));
+        let beside = beside::lines(fit).into_iter().chain(beside::robust(&fit.outcome));
+        lines.extend(beside.map(|(about, what)| format!("    {about:<8} {what}")));
     }
     lines.push(row([
         "quantity", "mean", "between", "within", "type A", "type B", "combined", "dof", "k", "expanded",
@@ -231,6 +233,9 @@ struct Run<'a> {
     scan: String,
     samples: usize,
     rms_ln: f64,
+    /// What theta_s in the file reads too much, degrees, with its standard error; null where none is fitted, or it is not determined.
+    offset_deg: Option<f64>,
+    offset_stderr_deg: Option<f64>,
     provenance: Provenance<'a>,
 }
 
@@ -269,7 +274,14 @@ struct JsonBudget {
 /// For programs.
 pub fn json(found: &Found) -> String {
     let pairs = found.measurements.iter().zip(found.fits);
+    let offset = |fit: &FittedScan| {
+        let offset = fit.outcome.offset.filter(|offset| offset.stderr.is_finite())?;
+        let value = fit.about.counts.of_file(offset.value.to_degrees());
+        Some((value, offset.stderr.to_degrees()))
+    };
     let runs = pairs.map(|(measurement, fit)| Run {
+        offset_deg: offset(fit).map(|offset| offset.0),
+        offset_stderr_deg: offset(fit).map(|offset| offset.1),
         scan: measurement.label(),
         samples: fit.outcome.samples,
         rms_ln: fit.outcome.rms_ln,

@@ -81,11 +81,8 @@ fn page(fit: &FittedScan, minima: bool) -> String {
             six(chi2)
         ));
     }
-    if let Some(robust) = &outcome.robust {
-        line(format!(
-            "  robust     standard deviation {} of ln f; what is beyond 6 of them is left out",
-            six(robust.scale)
-        ));
+    if let Some((about, what)) = beside::robust(outcome) {
+        line(format!("  {about:<9}  {what}"));
     }
     line(format!(
         "  minima     {} distinct, improvement potential {:.1} %",

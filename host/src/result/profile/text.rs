@@ -8,6 +8,7 @@ use crate::analysis::profile::findings::Findings;
 use crate::analysis::profile::{self, End, Interval};
 use crate::analysis::unseen;
 use crate::number::{percent, significant, two};
+use crate::result::beside;
 use crate::result::text::choice;
 use crate::result::words::correlated;
 
@@ -21,6 +22,10 @@ pub fn text(findings: &Findings) -> String {
         percent(known.scale),
         known.degrees_of_freedom
     );
+    for (about, what) in beside::of_fit(&findings.options, &findings.outcome, &findings.about) {
+        page.truncate(page.trim_end().len());
+        let _ = write!(page, "\n  {about:<9}  {what}\n\n");
+    }
     if let Some(misfit) = &known.misfit {
         let copies = if findings.copies.is_empty() {
             ""

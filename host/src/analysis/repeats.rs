@@ -422,7 +422,7 @@ mod tests {
             let all = values(&[1.0, 1.01, 0.99, 1.02, 0.98, last], 0.01);
             budget(&all, Common::default(), 10).unwrap()
         };
-        assert_eq!((apart(1.06).apart, of_ten(1.06).apart), (Some(5), None));
+        assert_eq!((apart(1.1).apart, of_ten(1.1).apart), (Some(5), None));
         assert_eq!(of_ten(1.2).apart, Some(5));
         // A spread of 2 standard errors of four runs is of a chance of 0.8 %: seldom in one quantity, not in one of ten.
         let wide = values(&[1.0, 1.02, 0.98, 1.037], 0.0125);

@@ -96,7 +96,10 @@ mod tests {
     #[test]
     fn a_coverage_factor_or_a_floor_of_no_uncertainties_is_refused() {
         let weighted = "theta_i,theta_s,brdf,U\n20,-10,0.1,0.01\n20,30,0.2,0.02\n20,35,0.2,0.02\n";
-        for (coverage, sigma_floor) in [(Some(2.0), 0.0), (None, 0.1)] {
+        for (coverage, sigma_floor, weighted) in [
+            (Some(2.0), 0.0, weighted.to_string()),
+            (None, 0.1, weighted.replace('U', "sigma")),
+        ] {
             let options = ReadOptions {
                 drop_invalid: true,
                 coverage,
@@ -105,8 +108,8 @@ mod tests {
             };
             let error = refused(&[ROWS], &options).unwrap();
             assert!(error.contains("no uncertainties are read"), "{error}");
-            assert_eq!(refused(&[weighted], &options), None);
-            assert_eq!(refused(&[ROWS, weighted], &options), None);
+            assert_eq!(refused(&[&weighted], &options), None);
+            assert_eq!(refused(&[ROWS, &weighted], &options), None);
         }
     }
 }

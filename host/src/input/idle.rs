@@ -29,16 +29,9 @@ pub fn refuse(scans: &[Measurement], options: &ReadOptions) -> Result<(), Error>
         ))
         .help(format!("leave it out, or give one that is there: {}", some_of(&there)))));
     }
-    let given = [
-        ("--coverage", options.coverage.is_some()),
-        ("--sigma-floor", options.sigma_floor > 0.0),
-    ];
-    let idle = given.iter().find(|(_, given)| *given);
-    if let Some((option, _)) = idle.filter(|_| scans.iter().all(|scan| scan.sigma_ln.is_none())) {
-        return Err(at(Error::new(format!(
-            "no uncertainties are read, which {option} is for"
-        ))
-        .help("leave it out, or name their column with --columns sigma=N")));
+    if options.coverage.is_some() && scans.iter().all(|scan| scan.sigma_ln.is_none()) {
+        return Err(at(Error::new("no uncertainties are read, which --coverage is for")
+            .help("leave it out, or name their column with --columns sigma=N")));
     }
     Ok(())
 }
@@ -94,22 +87,16 @@ mod tests {
     }
 
     #[test]
-    fn a_coverage_factor_or_a_floor_of_no_uncertainties_is_refused() {
+    fn a_coverage_factor_of_no_uncertainties_is_refused() {
+        let options = ReadOptions {
+            drop_invalid: true,
+            coverage: Some(2.0),
+            ..ReadOptions::default()
+        };
+        let error = refused(&[ROWS], &options).unwrap();
+        assert!(error.contains("no uncertainties are read"), "{error}");
         let weighted = "theta_i,theta_s,brdf,U\n20,-10,0.1,0.01\n20,30,0.2,0.02\n20,35,0.2,0.02\n";
-        for (coverage, sigma_floor, weighted) in [
-            (Some(2.0), 0.0, weighted.to_string()),
-            (None, 0.1, weighted.replace('U', "sigma")),
-        ] {
-            let options = ReadOptions {
-                drop_invalid: true,
-                coverage,
-                sigma_floor,
-                ..ReadOptions::default()
-            };
-            let error = refused(&[ROWS], &options).unwrap();
-            assert!(error.contains("no uncertainties are read"), "{error}");
-            assert_eq!(refused(&[&weighted], &options), None);
-            assert_eq!(refused(&[ROWS, &weighted], &options), None);
-        }
+        assert_eq!(refused(&[weighted], &options), None);
+        assert_eq!(refused(&[ROWS, weighted], &options), None);
     }
 }

@@ -72,6 +72,22 @@ impl Reach {
     }
 }
 
+/// Values from `from`, exclusive, to `end`, inclusive, in growing steps of at most `most`.
+fn outward(from: f64, end: f64, first: f64, most: f64) -> impl Iterator<Item = f64> {
+    let step = move |&(value, step): &(f64, f64)| {
+        let left: f64 = end - value;
+        let next = if left.abs() <= step {
+            end
+        } else {
+            value + step * left.signum()
+        };
+        (value != end).then_some((next, (GROWTH * step).min(most)))
+    };
+    std::iter::successors(Some((from, first)), step)
+        .skip(1)
+        .map(|(value, _)| value)
+}
+
 /// Follows each open part of the index of refraction, for the parts that seem to be told.
 fn along_index(samples: &[Sample<f64>], options: &FitOptions, outcome: &mut Outcome, rise: f64, factor: f64) {
     let parameters = outcome.model.parameters;
@@ -89,16 +105,8 @@ fn along_index(samples: &[Sample<f64>], options: &FitOptions, outcome: &mut Outc
     for &place in &free {
         let held = Held::new(samples, options, outcome, place);
         for end in [options.lower[place], options.upper[place]] {
-            let (mut value, mut step) = (outcome.params[place], FIRST * outcome.params[place].max(1.0));
-            let mut params = outcome.params;
-            while value != end {
-                let left = end - value;
-                value = if left.abs() <= step {
-                    end
-                } else {
-                    value + step * left.signum()
-                };
-                step *= GROWTH;
+            let (best, mut params) = (outcome.params[place], outcome.params);
+            for value in outward(best, end, FIRST * best.max(1.0), f64::INFINITY) {
                 let Ok(point) = held.at(value, &[params], false) else {
                     break;
                 };
@@ -126,16 +134,8 @@ fn along_offset(samples: &[Sample<f64>], options: &FitOptions, outcome: &mut Out
     let mut reach = Reach::of(outcome);
     let (mut far, mut ended) = (0.0f64, true);
     for end in [least, most] {
-        let (mut value, mut params, mut last) = (offset.value, outcome.params, true);
-        let mut step = offset.stderr.min(TURN);
-        while value != end {
-            let left = end - value;
-            value = if left.abs() <= step {
-                end
-            } else {
-                value + step * left.signum()
-            };
-            step = (GROWTH * step).min(TURN);
+        let (mut params, mut last) = (outcome.params, true);
+        for value in outward(offset.value, end, offset.stderr.min(TURN), TURN) {
             // None is beyond the horizon.
             let turned: Option<Vec<Sample<f64>>> = samples.iter().map(|sample| moved(sample, value)).collect();
             let Some(turned) = turned else { break };
@@ -150,7 +150,7 @@ fn along_offset(samples: &[Sample<f64>], options: &FitOptions, outcome: &mut Out
                 reach.add(&params);
             }
         }
-        ended &= !last || value == offset.value;
+        ended &= !last || end == offset.value;
     }
     // What reaches an end of the range is not told by the scan.
     let error = far / factor;

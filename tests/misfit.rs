@@ -82,7 +82,7 @@ fn covered(length: f64, copies: u64) -> (u64, u64, [u64; 2]) {
     for copy in 0..copies {
         let (samples, options) = measured(length, copy);
         let outcome = engine::fit(&samples, &options).unwrap();
-        let known = uncertainty(&samples, &outcome);
+        let known = uncertainty(&samples, &options, &outcome);
         correlated += u64::from(known.misfit.is_some());
         if known.misfit.is_none() {
             assert_eq!(known, outcome.uncertainty);
@@ -113,12 +113,12 @@ fn errors_that_nobody_waits_for_are_not_computed() {
     let (samples, options) = measured(8.0, 1);
     let outcome = engine::fit(&samples, &options).unwrap();
     give_up(Until::set(&OVER));
-    let known = uncertainty(&samples, &outcome);
+    let known = uncertainty(&samples, &options, &outcome);
     assert!(known.misfit.is_some());
     OVER.store(true, Ordering::Relaxed);
-    assert!(uncertainty(&samples, &outcome).misfit.is_none());
+    assert!(uncertainty(&samples, &options, &outcome).misfit.is_none());
     OVER.store(false, Ordering::Relaxed);
-    assert_eq!(uncertainty(&samples, &outcome), known);
+    assert_eq!(uncertainty(&samples, &options, &outcome), known);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn independent_errors_hardly_grow() {
         let (samples, options) = measured(0.0, copy);
         let outcome = engine::fit(&samples, &options).unwrap();
         let expanded = |known: &engine::uncertainty::Uncertainty| coverage_factor(known) * known.stderr[0];
-        expanded(&uncertainty(&samples, &outcome)) / expanded(&outcome.uncertainty)
+        expanded(&uncertainty(&samples, &options, &outcome)) / expanded(&outcome.uncertainty)
     });
     let mean = grown.sum::<f64>() / copies as f64;
     println!("{correlated} of {copies} are taken for correlated; intervals are {mean:.3} times as wide in the mean");
@@ -152,7 +152,7 @@ fn a_wander_under_white_noise_is_counted() {
             sample.brdf *= (white * noise.normal()).exp();
         }
         let outcome = engine::fit(&samples, &options).unwrap();
-        let known = uncertainty(&samples, &outcome);
+        let known = uncertainty(&samples, &options, &outcome);
         let error = (outcome.params[0] - TRUTH[0]).abs();
         held += u64::from(error <= coverage_factor(&known) * known.stderr[0]);
         let independent = &outcome.uncertainty;
@@ -175,7 +175,7 @@ fn copies_of_a_correlated_scan_are_correlated() {
         let (samples, options) = measured(8.0, copy);
         let independent = engine::fit(&samples, &options).unwrap();
         let mut outcome = independent.clone();
-        outcome.uncertainty = uncertainty(&samples, &outcome);
+        outcome.uncertainty = uncertainty(&samples, &options, &outcome);
         let stderr = outcome.uncertainty.stderr[0];
         of_correlated += spread(&bootstrap(&samples, &options, &outcome, 60).unwrap(), 0) / stderr / 6.0;
         of_independent += spread(&bootstrap(&samples, &options, &independent, 60).unwrap(), 0) / stderr / 6.0;
@@ -207,10 +207,11 @@ fn the_width_of_another_lobe_is_within_its_error() {
                 ..at(degrees)
             })
             .collect();
-        let mut outcome = engine::fit(&samples, &measured(0.0, 0).1).unwrap();
+        let options = measured(0.0, 0).1;
+        let mut outcome = engine::fit(&samples, &options).unwrap();
         let plain = derived::at_each_angle(&samples, outcome.view(), &outcome.uncertainty)[0];
         assert!(plain.peak.unwrap().from_data.is_none());
-        outcome.uncertainty = uncertainty(&samples, &outcome);
+        outcome.uncertainty = uncertainty(&samples, &options, &outcome);
         let known = &outcome.uncertainty;
         let width = |at: &Derived| at.peak.and_then(|peak| peak.width);
         let actual = derived::at(at(0).theta_i, &truth, known);
@@ -243,8 +244,9 @@ fn runs_of_one_paint_agree_within_their_errors() {
     }
     let known = [1, 2].map(|number| {
         let samples = scan(&run(number));
-        let outcome = engine::fit(&samples, &FitOptions::default()).unwrap();
-        let known = uncertainty(&samples, &outcome);
+        let options = FitOptions::default();
+        let outcome = engine::fit(&samples, &options).unwrap();
+        let known = uncertainty(&samples, &options, &outcome);
         (outcome.params, outcome.uncertainty, known)
     });
     let [(a, a_plain, a_known), (b, b_plain, b_known)] = &known;
@@ -271,7 +273,7 @@ fn a_wandering_misfit_leaves_a_narrow_lobe_known() {
     };
     let outcome = engine::fit(&samples, &options).unwrap();
     let kept = engine::robust::kept(&samples, &outcome);
-    let known = uncertainty(&kept, &outcome);
+    let known = uncertainty(&kept, &options, &outcome);
     let [rho_d, m] = [0, 3].map(|place| (outcome.params[place], known.stderr[place]));
     println!("rho_d {rho_d:?}, m {m:?}, {:?}", known.misfit);
     assert!(
@@ -305,7 +307,7 @@ fn a_lobe_under_a_wave_is_held_by_its_intervals() {
             ..FitOptions::default()
         };
         let outcome = engine::fit(&samples, &options).unwrap();
-        let known = uncertainty(&samples, &outcome);
+        let known = uncertainty(&samples, &options, &outcome);
         let error = (outcome.params[3] - 0.05).abs();
         held += u64::from(error <= coverage_factor(&known) * known.stderr[3]);
         errors.push(known.stderr[3] / 0.05);

@@ -73,7 +73,7 @@ fn intervals_end_where_the_cost_has_risen() {
             // rho_d is as good as linear.
             if index == 0 {
                 let half = 0.5 * (profile.intervals[1].high.value - profile.intervals[1].low.value);
-                let known = misfit::uncertainty(&samples, &outcome);
+                let known = misfit::uncertainty(&samples, &options, &outcome);
                 let expected = misfit::coverage_factor(&known) * known.stderr[0];
                 quadratic = quadratic.max((half / expected - 1.0).abs());
             }

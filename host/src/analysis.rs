@@ -24,3 +24,4 @@ pub mod repeats;
 pub mod stability;
 pub mod undetermined;
 pub mod unseen;
+mod weighed;

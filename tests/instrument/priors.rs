@@ -7,6 +7,8 @@ use brdfit::analysis::choose::Wanted;
 use brdfit::analysis::profile::profiles;
 use brdfit::engine::{self, FitError, FitOptions, Material, Outcome, Prior};
 use brdfit::input::Measurement;
+use brdfit_core::geometry::Sample;
+use brdfit_core::real::Real;
 
 #[test]
 fn a_prior_tells_what_the_scan_does_not() {
@@ -32,6 +34,56 @@ fn a_prior_tells_what_the_scan_does_not() {
     }
     println!("mean squared pull {pulls:.2}; without the prior n is off by {free:.2}");
     assert!((0.5..1.6).contains(&pulls) && free > 0.05);
+}
+
+/// A scan whose ln f has errors of 5 % that are correlated over 10 degrees.
+fn correlated(seed: u64) -> Vec<Sample<f64>> {
+    let mut samples = noisy(&dielectric(), &grid(&[20.0, 40.0], 2, 80), 0.0, seed);
+    let mut noise = Noise::new(13, seed);
+    let kept = Real::portable_exp(-0.2);
+    let mut error = noise.normal();
+    for sample in &mut samples {
+        error = kept * error + (1.0 - kept * kept).sqrt() * noise.normal();
+        sample.brdf *= Real::portable_exp(0.05 * error);
+    }
+    samples
+}
+
+/// However many samples a scan has that say the same: what is known from elsewhere is known no worse with it, and better where it says something.
+#[test]
+fn a_prior_counts_beside_correlated_samples() {
+    const SEEDS: u64 = 40;
+    // As much as such a scan tells of m, and a fifth of it.
+    for sigma in [0.004, 0.0008] {
+        let (mut pulls, mut off, mut joint, mut alone) = (0.0, 0.0, 0.0, 0.0);
+        for seed in 0..SEEDS {
+            let samples = correlated(seed);
+            let mean = 0.15 + sigma * Noise::new(14, seed).normal();
+            let prior = Some(Prior { mean, sigma });
+            let asked = options(|options| options.instrument.priors[PLACE_M] = prior);
+            let without = fit(&samples, &options(|_| ()));
+            alone += (without.params[PLACE_M] - 0.15).powi(2) / SEEDS as f64;
+            let scan = Measurement::of_samples("scan", samples.clone(), None);
+            let found = analysis::fit::fit(&scan, &Wanted::One(asked)).unwrap().outcome;
+            let error = found.uncertainty.stderr[PLACE_M];
+            assert!(error < 1.05 * sigma, "{error}");
+            off += (found.params[PLACE_M] - 0.15).powi(2) / SEEDS as f64;
+            pulls += ((found.params[PLACE_M] - 0.15) / error).powi(2) / SEEDS as f64;
+            let other = correlated(seed + SEEDS);
+            let shared = [false, false, false, true, true, false];
+            let fits = analysis::joint::fit(&[&samples, &other], &[(asked, shared.to_vec())], None).unwrap();
+            let best = fits.best();
+            let error = best.known.errors[0][PLACE_M].expect("m is determined");
+            assert!(error < 1.05 * sigma, "{error}");
+            joint += ((best.fitted.scans[0][PLACE_M] - 0.15) / error).powi(2) / SEEDS as f64;
+        }
+        let [off, alone] = [off, alone].map(f64::sqrt);
+        println!(
+            "m is off by {off:.5} with a prior of {sigma}, {alone:.5} without: mean squared pull {pulls:.2}, of pairs {joint:.2}"
+        );
+        assert!((0.5..1.6).contains(&pulls) && (0.5..1.6).contains(&joint));
+        assert!(off < sigma && off < alone);
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
 use super::misfit::{self, Inflation};
+use super::weighed;
 use crate::engine::robust::{self, Robust};
 use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
 use crate::error::Error;
@@ -197,7 +198,10 @@ impl Choice {
 /// [`FitError`]; of several candidates that of the one with the fewest parameters, if none can be fitted.
 pub fn fit(samples: &[Sample<f64>], wanted: &Wanted) -> Result<(FitOptions, Outcome, Option<Choice>), FitError> {
     match wanted {
-        Wanted::One(options) => Ok((*options, engine::fit(samples, options)?, None)),
+        Wanted::One(options) => {
+            let outcome = weighed::fit(samples, options, engine::fit(samples, options)?)?;
+            Ok((*options, outcome, None))
+        }
         Wanted::Best(list) => {
             let (samples, robust) = without_outliers(samples, list)?;
             let choice = choose(&samples, list)?;
@@ -254,7 +258,8 @@ fn fit_each(
             let known: Vec<Values> = starts
                 .map(|(model, values)| options.model.translated(model, values))
                 .collect();
-            engine::fit_from(samples, options, &known).map(|outcome| (*place, **options, outcome))
+            let outcome = weighed::fit(samples, options, engine::fit_from(samples, options, &known)?)?;
+            Ok((*place, **options, outcome))
         };
         let found: Vec<_> = stage.par_iter().map(fit).collect();
         for fit in found {

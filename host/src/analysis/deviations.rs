@@ -7,7 +7,7 @@ use super::chance::below_chi2;
 use super::choose::{self, Wanted};
 use super::misfit;
 use crate::engine::uncertainty::Uncertainty;
-use crate::engine::{Outcome, Values};
+use crate::engine::{FitOptions, Outcome, Values};
 use crate::input::Measurement;
 use crate::input::weight::{self, Deviation};
 use crate::number::{percent, two};
@@ -206,15 +206,15 @@ impl Stated {
 /// The uncertainty of a fit of these samples: with the correlation of its residuals ([`misfit::uncertainty`]), or of the standard deviations that the file states; and what became of these.
 pub fn uncertainty(
     samples: &[Sample<f64>],
+    options: &FitOptions,
     outcome: &Outcome,
     stated: Option<Stated>,
 ) -> (Uncertainty, Option<Verdict>) {
     let Some(Stated { sigma, absolute }) = stated else {
-        return (misfit::uncertainty(samples, outcome), None);
+        return (misfit::uncertainty(samples, options, outcome), None);
     };
     let stated = Stated { sigma, absolute };
-    let independent = &outcome.uncertainty;
-    let known = misfit::surely(samples, outcome);
+    let known = misfit::surely(samples, options, outcome);
     let verdict = stated.verdict(
         (known.scale, known.rounding),
         known.degrees_of_freedom,
@@ -222,7 +222,7 @@ pub fn uncertainty(
     );
     let ratio = known.scale / sigma;
     let errors = match verdict {
-        Some(Verdict::Absolute(_)) => scaled(independent, ratio),
+        Some(Verdict::Absolute(_)) => scaled(&misfit::independent(options, outcome), ratio),
         Some(Verdict::Used) => scaled(&known, ratio),
         Some(Verdict::Refuted(_) | Verdict::Exact) | None => known,
     };
@@ -232,7 +232,7 @@ pub fn uncertainty(
 /// The errors of residuals, which are `ratio` times their standard deviations, as those of the standard deviations.
 fn scaled(known: &Uncertainty, ratio: f64) -> Uncertainty {
     let scaled = |axis: &Values| axis.iter().map(|part| part / ratio).collect::<Values>();
-    // What stands behind the axes of the parameters is the calibration, which is no noise.
+    // What stands behind the axes of the parameters is of priors and calibration, which are no noise.
     let all = |axes: &[Values]| -> Vec<Values> {
         let (noise, calibration) = axes.split_at(known.places.len());
         noise.iter().map(scaled).chain(calibration.iter().copied()).collect()

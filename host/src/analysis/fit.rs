@@ -224,7 +224,7 @@ pub fn known(
 ) -> (Outcome, Option<Verdict>) {
     let mut outcome = unseen::settled(samples, options, outcome);
     let stated = Stated::of(measurement);
-    let (uncertainty, verdict) = deviations::uncertainty(samples, &outcome, stated);
+    let (uncertainty, verdict) = deviations::uncertainty(samples, options, &outcome, stated);
     outcome.uncertainty = uncertainty;
     let scale = match (stated, verdict) {
         (Some(stated), Some(Verdict::Used | Verdict::Absolute(_))) => stated.sigma,

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::criteria::Criteria;
 use super::deviations::Stated;
 use super::misfit::Inflation;
+use super::weighed;
 use crate::engine::joint::{self, JointFit};
 use crate::engine::{FitError, FitOptions, Precision};
 use correlated::Linear;
@@ -58,8 +59,22 @@ pub fn fit(
     stated: Option<Stated>,
 ) -> Result<Fits, (usize, FitError)> {
     let one = |(options, shared): &(FitOptions, Vec<bool>)| {
-        let fitted = joint::fit(scans, shared, options)?;
-        let linear = Linear::of(scans, options, &fitted);
+        let mut fitted = joint::fit(scans, shared, options)?;
+        let mut linear = Linear::of(scans, options, &fitted);
+        // Priors count as in a fit of one scan.
+        for _ in 0..weighed::ROUNDS {
+            let raised = linear.as_ref().and_then(Linear::weight);
+            let Some((raised, sigma)) = raised.zip(fitted.sigma) else {
+                break;
+            };
+            if options.instrument.sigma.is_some() || !(raised > sigma * (1.0 + weighed::SETTLED)) {
+                break;
+            }
+            let mut settled = *options;
+            settled.instrument.sigma = Some(raised);
+            fitted = joint::fit(scans, shared, &settled)?;
+            linear = Linear::of(scans, options, &fitted);
+        }
         Ok((*options, fitted, linear))
     };
     let fitted: Result<Vec<_>, _> = candidates.par_iter().map(one).collect();

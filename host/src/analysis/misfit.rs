@@ -10,6 +10,7 @@ pub mod likelihood;
 pub mod lines;
 pub mod mixture;
 pub mod nodes;
+mod priors;
 pub mod process;
 pub mod rows;
 pub mod sandwich;
@@ -24,10 +25,11 @@ use brdfit_core::uncertainty::Place;
 use super::profile::calibrate::threshold;
 use super::unseen;
 use crate::engine::uncertainty::{Misfit, Uncertainty, along};
-use crate::engine::{Outcome, Values, View};
+use crate::engine::{FitOptions, Outcome, Values, View};
 use along::Along;
 use mixture::Student;
 use nodes::Node;
+use priors::Priors;
 use process::{Process, Residuals};
 use rows::Rows;
 
@@ -37,20 +39,33 @@ use rows::Rows;
 pub const EVIDENCE: f64 = 0.0;
 /// It must be surer to be called a fact, where one process stands for all, and to speak against a file's standard deviations: 4 % of scans with independent errors reach this.
 pub const SURE: f64 = 2.0;
+/// Rows of J along an axis of one standard error have a length of 1; what is far from that is no such axis.
+const UNIT: std::ops::Range<f64> = 0.5..2.0;
+/// Of an axis that is known from a prior the samples' part; less is rounding.
+const LITTLE: f64 = 1e-6;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
-pub fn uncertainty(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
-    with_evidence(samples, outcome, EVIDENCE)
+///
+/// What priors leave open stands behind the axes of the parameters ([`priors`]).
+pub fn uncertainty(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Uncertainty {
+    with_evidence(samples, options, outcome, EVIDENCE)
 }
 
 /// The same, but of residuals whose correlation is sure: what is only likely does not speak against standard deviations that a file gives.
-pub fn surely(samples: &[Sample<f64>], outcome: &Outcome) -> Uncertainty {
-    with_evidence(samples, outcome, SURE)
+pub fn surely(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Uncertainty {
+    with_evidence(samples, options, outcome, SURE)
 }
 
-fn with_evidence(samples: &[Sample<f64>], outcome: &Outcome, evidence: f64) -> Uncertainty {
+/// The uncertainty with independent residuals.
+pub fn independent(options: &FitOptions, outcome: &Outcome) -> Uncertainty {
+    Priors::of(options, outcome).apart(&outcome.uncertainty)
+}
+
+fn with_evidence(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome, evidence: f64) -> Uncertainty {
     let known = &outcome.uncertainty;
-    corrected(samples, &outcome.view(), known, evidence).unwrap_or_else(|| unseen::doubted(known))
+    let priors = Priors::of(options, outcome);
+    corrected(samples, &outcome.view(), known, &priors, evidence)
+        .unwrap_or_else(|| unseen::doubted(&priors.apart(known)))
 }
 
 /// So many standard errors are the half of a 95 % interval: Student's t of the effective degrees of freedom; infinite without any.
@@ -72,7 +87,7 @@ pub fn coverage_factor(known: &Uncertainty) -> f64 {
 /// By how much correlation and the uncertainty of the calibration raise the variance of parameter `index` of the same fit with independent residuals; that of the least known if it has none itself.
 pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -> f64 {
     let count = independent.places.len();
-    // What stands behind the axes of the parameters is the calibration, which the samples do not show.
+    // What the engine has behind the axes of the parameters is the calibration, which the samples do not show.
     let noise = match independent.axes.get(..count) {
         Some(noise) if independent.axes.len() > count => along(
             noise,
@@ -87,17 +102,26 @@ pub fn inflation(known: &Uncertainty, independent: &Uncertainty, index: usize) -
 }
 
 /// `None` where independence is not refuted, or nothing can be said.
-fn corrected(samples: &[Sample<f64>], view: &View, known: &Uncertainty, evidence: f64) -> Option<Uncertainty> {
-    let (rows, all, seen) = of_fit(samples, view, known)?;
+fn corrected(
+    samples: &[Sample<f64>],
+    view: &View,
+    known: &Uncertainty,
+    priors: &Priors,
+    evidence: f64,
+) -> Option<Uncertainty> {
+    let (rows, all, seen) = of_fit(samples, view, known, !priors.is_empty())?;
     let nodes = nodes::nodes(&all, known.degrees_of_freedom, evidence)?;
-    Some(with(&rows, known, &seen, &nodes))
+    Some(with(&rows, known, &seen, &nodes, priors))
 }
 
 /// The samples along their lines, the residuals with the rows of J along the axes of the parameters inside their bounds that can be told from rounding, and the places of these; `None` if there are none, or nothing can be said.
+///
+/// Along an axis that is known from `priors` too, the samples need not say much.
 fn of_fit<'a>(
     samples: &'a [Sample<f64>],
     view: &'a View,
     known: &Uncertainty,
+    priors: bool,
 ) -> Option<(Rows<'a>, Residuals, Vec<usize>)> {
     let inside: Vec<usize> = known.inside().collect();
     if known.degrees_of_freedom < 4 || unseen::is_exact(known) || inside.is_empty() {
@@ -106,10 +130,11 @@ fn of_fit<'a>(
     let axes: Vec<&Values> = inside.iter().map(|&k| &known.axes[k]).collect();
     let rows = Rows::new(samples, view);
     let mut all = rows.residuals(&axes, known.scale)?;
+    let told = if priors { LITTLE..UNIT.end } else { UNIT };
     let seen: Vec<bool> = (0..axes.len())
         .map(|k| {
             let squares: f64 = all.rows.iter().skip(k).step_by(axes.len()).map(|x| x * x).sum();
-            (0.5..2.0).contains(&squares)
+            told.contains(&squares)
         })
         .collect();
     if !seen.contains(&true) {
@@ -150,7 +175,8 @@ pub fn inflation_of_best(samples: &[Sample<f64>], fits: &[&Outcome]) -> Option<I
     let finite = fits.iter().filter(|fit| fit.uncertainty.scale.is_finite());
     let best = finite.min_by(|a, b| a.uncertainty.scale.total_cmp(&b.uncertainty.scale))?;
     let view = best.view();
-    let (_, all, _) = of_fit(samples, &view, &best.uncertainty)?;
+    let priors = best.prior_cost > 0.0;
+    let (_, all, _) = of_fit(samples, &view, &best.uncertainty, priors)?;
     Inflation::of(&all, best.uncertainty.degrees_of_freedom)
 }
 
@@ -204,24 +230,25 @@ impl Mean {
 }
 
 /// The uncertainty with the mean covariance of the nodes.
-fn with(rows: &Rows, known: &Uncertainty, seen: &[usize], nodes: &[Node]) -> Uncertainty {
+fn with(rows: &Rows, known: &Uncertainty, seen: &[usize], nodes: &[Node], priors: &Priors) -> Uncertainty {
     let count = seen.len();
     let mean = Mean::of(nodes, known.degrees_of_freedom);
-    let (covariance, student) = (&mean.covariance, mean.student);
-    let root = sandwich::cholesky(covariance);
-    let mut axes = known.axes.clone();
-    for (i, &place) in seen.iter().enumerate() {
-        axes[place] = Values::from_fn(known.places.len(), |k| {
-            // Columns of the root: the covariance is root root'.
-            (i..count).map(|j| root[j][i] * known.axes[seen[j]][k]).sum()
-        });
-    }
+    let student = mean.student;
     let along = Along {
         rows,
         known,
         nodes,
         tails: student.variance,
+        priors,
     };
+    let mut axes = known.axes.clone();
+    match along.inside() {
+        Some((places, covariance)) if !priors.is_empty() => {
+            sandwich::turn(&mut axes, &places, &covariance);
+            priors.add(known, &places, &mut axes);
+        }
+        _ => sandwich::turn(&mut axes, seen, &mean.covariance),
+    }
     // Where nothing is told of a displacement of its own, it has the factor of all together.
     let whole = Real::sqrt(mean.size * student.variance / count as f64).max(1.0);
     for (axis, place) in axes.iter_mut().zip(&known.places) {

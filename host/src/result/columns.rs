@@ -226,7 +226,7 @@ fn found() -> Vec<Column> {
     let scale = "robust standard deviation of a residual of ln f";
     let offset =
         "what the instrument reads for theta_s = 0, in the sign of the file, if that was fitted and is determined";
-    let priors = "standard deviation of ln f by which priors were weighed";
+    let priors = "standard deviation of ln f by which priors were weighed: that of the residuals, the larger the more they are correlated";
     vec![
         number(
             "rms_ln",

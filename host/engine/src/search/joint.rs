@@ -44,6 +44,8 @@ pub struct JointFit {
     pub of_samples: f64,
     /// The same of fits of each scan on its own.
     pub separate: f64,
+    /// Standard deviation of a residual by which priors were weighed, if there are any.
+    pub sigma: Option<f64>,
     /// Samples of all scans.
     pub samples: usize,
     /// Parameters that are free.
@@ -121,8 +123,10 @@ pub fn run<const P: usize>(
     }
     let best = &found.best;
     let [_, priors, limit] = scene.costs(&setup, &best.x);
+    let cost = best.at.cost - limit;
+    // How far the samples are off is what they say, and not whether a prior was right.
     let mut at = best.at;
-    at.cost -= limit;
+    at.cost = cost - priors;
     let uncertainty = Uncertainty::new(&at, &best.x, &bounds, rows);
     let error = |s: usize, k: usize| {
         let place = problem.place(s, k);
@@ -155,9 +159,10 @@ pub fn run<const P: usize>(
         lifted: each(&lifted),
         scale: uncertainty.scale,
         degrees_of_freedom: uncertainty.degrees_of_freedom,
-        cost: at.cost,
-        of_samples: at.cost - priors,
+        cost,
+        of_samples: cost - priors,
         separate: found.separate,
+        sigma: (options.prior_count() > 0).then_some(setup.sigma),
         samples,
         parameters: free,
     })

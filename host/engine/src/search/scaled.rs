@@ -129,6 +129,7 @@ impl Scale {
             errors: given(&fitted.errors),
             lifted: given(&fitted.lifted),
             scale: self.residual(fitted.scale),
+            sigma: fitted.sigma.map(|sigma| self.residual(sigma)),
             scans: fitted
                 .scans
                 .iter()

@@ -1,4 +1,6 @@
 //! What is known of the parameters at the end of a fit with an instrument.
+//!
+//! Its cost is that of the samples alone: how far they are off is what residuals say, and not whether a prior was right.
 
 use brdfit_core::lm::{Bounds, Linearization, Problem};
 use brdfit_core::search::{Candidate, Region, Scene};
@@ -16,7 +18,7 @@ pub struct Settled<'a, const P: usize> {
 
 impl<const P: usize> Problem<f64, P> for Settled<'_, P> {
     fn cost(&self, x: &[f64; P]) -> f64 {
-        self.scene.cost(x) + self.rows.costs(x).0
+        self.scene.cost(x)
     }
 
     fn linearize(&self, x: &[f64; P]) -> Linearization<f64, P> {
@@ -24,7 +26,6 @@ impl<const P: usize> Problem<f64, P> for Settled<'_, P> {
         let mut more = Linearization::zero();
         self.rows.add_priors(x, &mut more);
         // A limit that holds is no residual: it only takes away a direction.
-        sums.cost += more.cost;
         self.rows.add_limit(x, &mut more);
         for i in 0..P {
             sums.gradient[i] += more.gradient[i];

@@ -15,7 +15,7 @@ pub fn contradicted(samples: &[Sample<f64>], options: &FitOptions, outcome: &Out
     let mut without = *options;
     without.instrument.priors.fill(None);
     let mut found = engine::fit_from(samples, &without, &[outcome.params]).ok()?;
-    found.uncertainty = misfit::uncertainty(samples, &found);
+    found.uncertainty = misfit::uncertainty(samples, &without, &found);
     let one = |place: usize| {
         let prior = options.instrument.priors[place]?;
         let (value, error) = (found.params[place], found.uncertainty.stderr[place]);

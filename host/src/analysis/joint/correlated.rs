@@ -21,6 +21,10 @@ pub struct Linear {
     owners: Vec<(Option<usize>, usize)>,
     /// Each column of J in these coordinates, as far as it has some: a triangle.
     triangle: Vec<Vec<f64>>,
+    /// The rows of priors, in the same: each a residual that has nothing in common with another.
+    priors: Vec<Vec<f64>>,
+    /// Standard deviation of each of these residuals, in units of `scale`.
+    size: f64,
     degrees_of_freedom: usize,
     /// The standard deviation of a residual.
     pub scale: f64,
@@ -45,7 +49,7 @@ impl Linear {
             owners.extend(own.map(|place| (Some(scan), place)));
         }
         let degrees_of_freedom = fitted.samples.checked_sub(owners.len()).filter(|&left| left >= 4)?;
-        let scale = Real::sqrt(fitted.cost / degrees_of_freedom as f64);
+        let scale = Real::sqrt(fitted.of_samples / degrees_of_freedom as f64);
         if scale < rounding(Precision::F64) || owners.is_empty() {
             return None;
         }
@@ -69,14 +73,26 @@ impl Linear {
             all.rows.extend(one.rows);
             all.ends.extend(one.ends.iter().map(|end| begin + end));
         }
+        let samples = all.values.len();
+        let size = fitted.sigma.map_or(1.0, |sigma| sigma / scale);
+        for (k, &(_, place)) in owners.iter().enumerate() {
+            if let Some(prior) = options.instrument.priors[place] {
+                let slope = size / prior.sigma;
+                all.rows
+                    .extend((0..owners.len()).map(|j| if j == k { slope } else { 0.0 }));
+            }
+        }
         let (kept, triangle) = orthogonal(&mut all);
         if triangle.is_empty() {
             return None;
         }
+        let priors = all.rows.split_off(samples * all.columns);
         let seen = owners.into_iter().zip(&kept).filter(|(_, kept)| **kept);
         Some(Linear {
             owners: seen.map(|(owner, _)| owner).collect(),
             triangle,
+            priors: priors.chunks_exact(all.columns).map(<[f64]>::to_vec).collect(),
+            size,
             degrees_of_freedom,
             scale,
             all,
@@ -88,13 +104,24 @@ impl Linear {
         Inflation::of(&self.all, self.degrees_of_freedom)
     }
 
+    /// The standard deviation by which priors should be weighed, which have nothing in common with samples that are correlated; `None` where these are not surely so.
+    pub fn weight(&self) -> Option<f64> {
+        Some(self.scale * Real::sqrt(self.inflation()?.factor))
+    }
+
     /// How the residuals are correlated, and by how much that raises the standard error of each parameter of each scan; `None` where independence is not refuted with so much evidence.
     pub fn factors(&self, fitted: &JointFit, evidence: f64) -> Option<(Misfit, Vec<Vec<f64>>)> {
         let nodes = nodes::nodes(&self.all, self.degrees_of_freedom, evidence)?;
         let mean = Mean::of(&nodes, self.degrees_of_freedom);
-        let factors: Vec<f64> = (0..self.owners.len())
-            .map(|k| self.factor(k, &mean.covariance))
-            .collect();
+        let mut covariance = mean.covariance.clone();
+        for row in &self.priors {
+            for i in 0..row.len() {
+                for j in 0..row.len() {
+                    covariance[i][j] += self.size * row[i] * self.size * row[j];
+                }
+            }
+        }
+        let factors: Vec<f64> = (0..self.owners.len()).map(|k| self.factor(k, &covariance)).collect();
         let all = factors.iter().filter(|factor| factor.is_finite());
         let (least, most) = all.fold((f64::INFINITY, 0.0f64), |(a, b), &x| (a.min(x), b.max(x)));
         let one = |scan: usize, place: usize| {
@@ -162,7 +189,7 @@ fn orthogonal(all: &mut Residuals) -> (Vec<bool>, Vec<Vec<f64>>) {
         }
     }
     all.columns = new.len();
-    all.rows = (0..all.values.len())
+    all.rows = (0..all.rows.len() / count)
         .flat_map(|place| new.iter().map(move |column| column[place]))
         .collect();
     (kept, triangle)

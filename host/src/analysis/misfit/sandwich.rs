@@ -3,6 +3,7 @@
 use brdfit_core::real::Real;
 
 use super::process::{Process, Residuals, step};
+use crate::engine::Values;
 use crate::until::until;
 
 /// A correlation between lines below this is none.
@@ -179,8 +180,20 @@ fn mirrored(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     matrix
 }
 
+/// The axes in these places become those of this covariance, which is in coordinates along them.
+pub fn turn(axes: &mut [Values], places: &[usize], covariance: &[Vec<f64>]) {
+    let root = cholesky(covariance);
+    let old: Vec<Values> = places.iter().map(|&place| axes[place]).collect();
+    for (i, &place) in places.iter().enumerate() {
+        axes[place] = Values::from_fn(axes[place].len(), |k| {
+            // Columns of the root: the covariance is root root'.
+            (i..old.len()).map(|j| root[j][i] * old[j][k]).sum()
+        });
+    }
+}
+
 /// The lower triangle whose product with its transpose is a symmetric matrix without negative eigenvalues; a pivot that rounding takes below 0 is a small one.
-pub fn cholesky(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn cholesky(a: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let count = a.len();
     let mut root = vec![vec![0.0; count]; count];
     for i in 0..count {

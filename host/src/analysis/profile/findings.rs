@@ -76,7 +76,7 @@ pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result
         };
         let found = profiles(samples, &plain, outcome, &parameters, asked.calibrate, stated)?;
         let mut known = found.outcome.clone();
-        known.uncertainty = deviations::uncertainty(samples, &known, stated).0;
+        known.uncertainty = deviations::uncertainty(samples, &plain, &known, stated).0;
         let copies = bootstrap(samples, &plain, &known, asked.bootstrap)?;
         Ok(Ok((options, choice, found, copies)))
     };
@@ -87,7 +87,7 @@ pub fn find(measurement: &Measurement, wanted: &Wanted, asked: &Asked) -> Result
         improved_from,
         list: profiles,
     } = found;
-    outcome.uncertainty = deviations::uncertainty(&robust::kept(samples, &outcome), &outcome, stated).0;
+    outcome.uncertainty = deviations::uncertainty(&robust::kept(samples, &outcome), &options, &outcome, stated).0;
     if !outcome.cost.is_finite() {
         return Err(fail("no start gives a finite model").help("take less extreme --bounds or --precision f64"));
     }

@@ -76,7 +76,7 @@ pub(super) fn referred(
         ..
     } = *held;
     // The ratio of likelihoods of independent residuals, scaled to the variance that they have (Rotnitzky and Jewell 1990).
-    let known = deviations::uncertainty(samples, outcome, stated).0;
+    let known = deviations::uncertainty(samples, options, outcome, stated).0;
     let inflation = misfit::inflation(&known, &outcome.uncertainty, index);
     profile.degrees_of_freedom = outcome.uncertainty.degrees_of_freedom;
     profile.limits = LEVELS.map(|level| inflation * threshold(level, known.effective.max(1.0)));

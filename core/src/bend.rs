@@ -51,7 +51,7 @@ pub(crate) fn peak<R: Real, const C: usize>(
 
 /// F with one index (n, kappa^2) at the peak of each lobe, and if `gradient` its derivatives by n^2 and kappa^2.
 #[cfg_attr(target_os = "none", inline(never))]
-fn at_peaks<R: Real>([n, kappa2]: [R; 2], peaks: Pack<R, 2>, gradient: bool) -> [[R; 3]; 2] {
+fn at_peaks<R: Real>([n, kappa2]: [R; 2], peaks: &Pack<R, 2>, gradient: bool) -> [[R; 3]; 2] {
     let index = Index::new(n, kappa2);
     if cfg!(target_os = "none") {
         let mut places = [[R::ZERO; 3]; 2];
@@ -59,13 +59,13 @@ fn at_peaks<R: Real>([n, kappa2]: [R; 2], peaks: Pack<R, 2>, gradient: bool) -> 
         return places;
     }
     // Side by side, which takes more instructions and half the time.
-    let Fresnel { f, d_n2, d_kappa2 } = index.reflect(peaks, gradient);
+    let Fresnel { f, d_n2, d_kappa2 } = index.reflect(*peaks, gradient);
     [0, 1].map(|lobe| [f.0[lobe], d_n2.0[lobe], d_kappa2.0[lobe]])
 }
 
 /// F at the peak of each lobe with one index (n, kappa^2), over that with another; 1 where the other has none.
-pub(crate) fn ratio<R: Real>(from: [R; 2], to: [R; 2], peaks: Pack<R, 2>) -> [R; 2] {
-    let [from, to] = [from, to].map(|index| at_peaks(index, peaks, false));
+pub(crate) fn ratio<R: Real>(from: [R; 2], to: [R; 2], peaks: &Pack<R, 2>) -> [R; 2] {
+    let (from, to) = (at_peaks(from, peaks, false), at_peaks(to, peaks, false));
     core::array::from_fn(|lobe| {
         let ([from, ..], [to, ..]) = (from[lobe], to[lobe]);
         if to > R::TINY { from / to } else { R::ONE }
@@ -105,7 +105,7 @@ pub(crate) fn bend<R: Real, const P: usize>(
     to: [R; P],
     [n, kappa2]: [usize; 2],
     weights: &[(usize, usize)],
-    peaks: Pack<R, 2>,
+    peaks: &Pack<R, 2>,
 ) -> [R; P] {
     let at = |x: &[R; P], place: usize, absent: R| x.get(place).copied().unwrap_or(absent);
     if n >= P {

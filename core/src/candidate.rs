@@ -23,8 +23,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
             ),
         };
         let fades = propose::shapes(&mut x, &shapes, bounds, (seed, i), &self.seen, region);
-        let mut waits = if fades { Waits::Fading } else { Waits::Weights };
-        if let Region::Index(like) = region
+        let waits = if let Region::Index(like) = region
             && Self::HAS_INDEX
         {
             // Where the model misfits, least squares of f would take the lobes away.
@@ -32,9 +31,13 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Scene<R, P> for
             if fades {
                 M::fade(&mut x, bounds);
             }
-            x = bounds.clamp(x);
-            waits = Waits::No;
-        }
+            bounds.keep(&mut x);
+            Waits::No
+        } else if fades {
+            Waits::Fading
+        } else {
+            Waits::Weights
+        };
         Candidate {
             x,
             rank: R::ZERO,
@@ -100,7 +103,8 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
                 levelled[k] *= scale;
             }
         }
-        (bounds.clamp(levelled), cost)
+        bounds.keep(&mut levelled);
+        (levelled, cost)
     }
 
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and the rank to its sum, less what it is at the lower bounds; given what [`Residuals::inlined_weights`] are, which is one pass.
@@ -115,7 +119,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             return;
         }
         let x = &mut candidate.x;
-        let sums = sums(x);
+        let mut sums = sums(x);
         candidate.passes += 1;
         if Self::WEIGHTS_END == 0 {
             candidate.rank = sums.cost;
@@ -123,9 +127,9 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
             return;
         }
         let roles = const { propose::roles(&M::PARAMETERS) };
-        let rank = box_least_squares(&sums, &roles, bounds, x);
+        let rank = box_least_squares(&mut sums, &roles, bounds, x);
         let again = candidate.waits == Waits::Fading && M::fade(x, bounds);
-        *x = bounds.clamp(*x);
+        bounds.keep(x);
         candidate.rank = rank;
         candidate.waits = if again { Waits::Weights } else { Waits::No };
     }
@@ -215,29 +219,28 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
     false
 }
 
-/// Sets the weights of `x` to those within bounds that solve `hessian weights = gradient` best; their sum of squares, less what it is at the lower bounds.
+/// Sets the weights of `x` to those within bounds that solve `hessian weights = gradient` best; their sum of squares, less what it is at the lower bounds. The sums are used up.
 fn box_least_squares<R: Real, const P: usize>(
-    sums: &Linearization<R, P>,
+    sums: &mut Linearization<R, P>,
     roles: &[Role; P],
     bounds: &Bounds<R, P>,
     x: &mut [R; P],
 ) -> R {
     // What is no weight has no room, and zeros in the sums.
-    let mut a = sums.hessian;
-    let mut g = [R::ZERO; P];
+    let (a, g) = (&mut sums.hessian, &mut sums.gradient);
     let mut room = [R::ZERO; P];
     for i in 0..P {
         if roles[i] == Role::Weight {
             room[i] = bounds.upper[i] - bounds.lower[i];
             a[i][i] = a[i][i] * R::of(1.0 + 1e-6) + R::MIN_POSITIVE;
             // The box is seen from its lower corner.
-            g[i] = -sums.gradient[i];
+            g[i] = -g[i];
             for j in 0..P {
                 g[i] += a[i][j] * bounds.lower[j];
             }
         }
     }
-    let step = boxqp::minimize(&a, &g, &[R::ZERO; P], &room);
+    let step = boxqp::minimize(a, g, &[R::ZERO; P], &room);
     let mut rank = R::ZERO;
     for i in 0..P {
         if roles[i] == Role::Weight {

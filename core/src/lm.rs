@@ -96,13 +96,18 @@ pub struct Bounds<R, const P: usize> {
 
 impl<R: Real, const P: usize> Bounds<R, P> {
     /// The nearest point within; NaN becomes the lower bound.
-    #[cfg_attr(target_os = "none", inline(never))]
     pub fn clamp(&self, x: [R; P]) -> [R; P] {
         let mut inside = x;
-        for i in 0..P {
-            inside[i] = x[i].max(self.lower[i]).min(self.upper[i]);
-        }
+        self.keep(&mut inside);
         inside
+    }
+
+    /// The same, in place.
+    #[cfg_attr(target_os = "none", inline(never))]
+    pub(crate) fn keep(&self, x: &mut [R; P]) {
+        for i in 0..P {
+            x[i] = x[i].max(self.lower[i]).min(self.upper[i]);
+        }
     }
 }
 
@@ -209,17 +214,19 @@ impl<R: Real, const P: usize> Fit<R, P> {
         options: &Options<R>,
     ) -> Self {
         let x = bounds.clamp(start);
-        let at = problem.linearize(&x);
         let mut fit = Fit {
             x,
-            at,
+            at: problem.linearize(&x),
             passes: 1,
             stop: None,
             damping: options.damping,
             growth: R::of(2.0),
-            scale: core::array::from_fn(|i| at.hessian[i][i]),
+            scale: [R::ZERO; P],
         };
-        if !is_finite(&at) {
+        for i in 0..P {
+            fit.scale[i] = fit.at.hessian[i][i];
+        }
+        if !is_finite(&fit.at) {
             fit.end(Stop::NotFinite);
         }
         fit
@@ -265,11 +272,8 @@ impl<R: Real, const P: usize> Fit<R, P> {
         }
         let cost = self.at.cost;
         let step = self.bounded(&self.at.hessian, bounds);
-        let mut straight = self.x;
-        for i in 0..P {
-            straight[i] += step[i];
-        }
-        let x = self.landing(bounds, &step, &problem.bend(&self.x, &step, straight));
+        let mut x = problem.bend(&self.x, &step, self.straight(&step));
+        self.land(bounds, &step, &mut x);
         let mut moved = false;
         for i in 0..P {
             moved |= (x[i] - self.x[i]).abs() > options.step_tolerance * self.x[i].abs();
@@ -328,10 +332,20 @@ impl<R: Real, const P: usize> Fit<R, P> {
         boxqp::minimize(&damped, &self.at.gradient, &lower, &upper)
     }
 
-    /// Where a step leads; `to`, but one to a bound ends on it, whatever the rounding of the sum.
+    /// Where a step leads if it is not bent.
     #[cfg_attr(target_os = "none", inline(never))]
-    fn landing(&self, bounds: &Bounds<R, P>, step: &[R; P], to: &[R; P]) -> [R; P] {
-        let mut x = bounds.clamp(*to);
+    fn straight(&self, step: &[R; P]) -> [R; P] {
+        let mut x = self.x;
+        for i in 0..P {
+            x[i] += step[i];
+        }
+        x
+    }
+
+    /// Keeps the end of a step within the bounds; a step to a bound ends on it, whatever the rounding of the sum.
+    #[cfg_attr(target_os = "none", inline(never))]
+    fn land(&self, bounds: &Bounds<R, P>, step: &[R; P], x: &mut [R; P]) {
+        bounds.keep(x);
         for i in 0..P {
             if step[i] == bounds.upper[i] - self.x[i] {
                 x[i] = bounds.upper[i];
@@ -339,7 +353,6 @@ impl<R: Real, const P: usize> Fit<R, P> {
                 x[i] = bounds.lower[i];
             }
         }
-        x
     }
 
     /// Follows a fit that has converged, beyond what its cost can tell, to where the gradient vanishes, so that its end does not depend on its start; in at most so many passes more. Not for an exact fit, of which the gradient is rounding.
@@ -364,11 +377,8 @@ impl<R: Real, const P: usize> Fit<R, P> {
     ) -> u32 {
         self.damping = self.damping.min(R::of(SETTLING_DAMPING));
         let step = self.bounded(model, bounds);
-        let mut to = self.x;
-        for i in 0..P {
-            to[i] += step[i];
-        }
-        let x = self.landing(bounds, &step, &to);
+        let mut x = self.straight(&step);
+        self.land(bounds, &step, &mut x);
         let mut way = x;
         let mut promised = R::ZERO;
         for i in 0..P {

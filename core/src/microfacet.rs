@@ -168,7 +168,7 @@ where
 
     fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
         let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
-        let ratio = ratio(index(like), index(x), seen.peaks);
+        let ratio = ratio(index(like), index(x), &seen.peaks);
         if let Some(rho_d) = x.get_mut(const { place(TERMS, 0) }) {
             *rho_d = get(TERMS, like, 0, R::ZERO);
         }
@@ -209,6 +209,6 @@ where
 
     fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         let index = const { [place(TERMS, 4), place(TERMS, 5)] };
-        bend(x, step, to, index, const { &weights_of_lobes(TERMS) }, seen.peaks)
+        bend(x, step, to, index, const { &weights_of_lobes(TERMS) }, &seen.peaks)
     }
 }

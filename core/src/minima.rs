@@ -109,15 +109,10 @@ impl<R: Real, const P: usize, S: List<Item = Minimum<R, P>>> Minima<R, P, S> {
             first_start: start,
         };
         // Joined with one minimum, a better fit may come within 1 % of the next.
-        while let Some(place) = self.list.iter().position(|old| same(old, &new))
-            && let [.., old] = to_end(&mut self.list, place)
-        {
-            new.hits += old.hits;
-            new.first_start = new.first_start.min(old.first_start);
-            if old.cost <= new.cost {
-                (new.x, new.cost) = (old.x, old.cost);
-            }
-            self.list.truncate(self.list.len() - 1);
+        while let Some(place) = self.list.iter().position(|old| same(old, &new)) {
+            let (hits, first_start) = join(&mut self.list, place, &mut new);
+            new.hits += hits;
+            new.first_start = new.first_start.min(first_start);
         }
         insert(&mut self.list, &new);
     }
@@ -153,9 +148,20 @@ fn same<R: Real, const P: usize>(a: &Minimum<R, P>, b: &Minimum<R, P>) -> bool {
     close(a.cost, b.cost, R::of(0.01)) || a.x.iter().zip(&b.x).all(|(&x, &y)| close(x, y, R::of(1e-3)))
 }
 
-/// Moves an item of a list to its end; the others stay in order.
+/// Takes an item out of a list, and joins it with `new`, which gets its coordinates unless it has the lower cost; its hits and its first start.
+pub(crate) fn join<R: Real, const P: usize>(
+    list: &mut (impl List<Item = Minimum<R, P>> + ?Sized),
+    place: usize,
+    new: &mut Minimum<R, P>,
+) -> (u32, u64) {
+    let of_old = to_end(list, place, new);
+    list.truncate(list.len().saturating_sub(1));
+    of_old
+}
+
+/// Moves an item of a list to its end, while the others stay in order; the rest of [`join`].
 #[cfg_attr(target_os = "none", inline(never))]
-pub(crate) fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place: usize) -> &mut [Minimum<R, P>] {
+fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place: usize, new: &mut Minimum<R, P>) -> (u32, u64) {
     let mut rest = list.get_mut(place..).unwrap_or_default();
     while let [first, others @ ..] = rest
         && let Some(next) = others.first_mut()
@@ -163,7 +169,13 @@ pub(crate) fn to_end<R: Real, const P: usize>(list: &mut [Minimum<R, P>], place:
         core::mem::swap(first, next);
         rest = others;
     }
-    list
+    let [old] = rest else {
+        return (0, new.first_start);
+    };
+    if old.cost <= new.cost {
+        (new.x, new.cost) = (old.x, old.cost);
+    }
+    (old.hits, old.first_start)
 }
 
 /// Puts `new` into its place in a list in order of cost; where there is no room, the last is left out.

@@ -152,11 +152,19 @@ pub const NEAR: usize = 8;
 impl<R: Real> Seen<R> {
     /// Of a scan that tells nothing.
     pub const fn nothing() -> Self {
-        Seen {
+        let mut seen = Seen {
             finest: R::ZERO,
             peaks: Pack([R::ONE; 2]),
-            near: [[(R::MAX, R::ZERO); NEAR]; 2],
+            near: [[(R::ZERO, R::ZERO); NEAR]; 2],
+        };
+        // A loop, where an image would otherwise copy one half from the other.
+        let near = seen.near.as_flattened_mut();
+        let mut k = 0;
+        while k < near.len() {
+            near[k].0 = R::MAX;
+            k += 1;
         }
+        seen
     }
 }
 

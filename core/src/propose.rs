@@ -14,8 +14,8 @@ pub(crate) const INDICES: [(f64, f64); 14] = [
     (1.0, 100.0),
     (1.0, 15.0),
     (10.0, 0.0),
-    // Dielectrics.
-    FADING,
+    // Dielectrics; the first stands for one that [`crate::model::Model::fade`] moves.
+    (1.0, 0.0),
     (1.2, 0.0),
     (2.0, 0.0),
     (3.5, 0.0),
@@ -26,10 +26,10 @@ pub(crate) const INDICES: [(f64, f64); 14] = [
     (1.5, 1.5),
     (4.0, 4.0),
 ];
-/// Where these groups end.
-pub(crate) const GROUPS: [u32; 3] = [5, 9, INDICES.len() as u32];
-/// Stands for an index that [`crate::model::Model::fade`] moves.
-const FADING: (f64, f64) = (1.0, 0.0);
+/// Where these groups begin and end.
+pub(crate) const GROUPS: [(u32, u32); 3] = [(0, 5), (5, 9), (9, INDICES.len() as u32)];
+/// The place of that.
+const FADING: u64 = GROUPS[1].0 as u64;
 /// Where that begins: 1 / kappa^2, or n where kappa cannot be so large.
 const FADE_FROM: (u16, f64) = (10, 1.3);
 /// Shares of the regimes of the index: kappa = 0, n = 1, both in the corner where F vanishes; the rest has both.
@@ -105,9 +105,8 @@ pub(crate) fn shapes<R: Real, const P: usize>(
     let even = start::even::<R>(seed, i);
     let own = start::unit::<R, P>(seed, i);
     let numbers = start::unit::<R, NUMBERS>(seed ^ 0x55, i);
-    let mut even = even.into_iter();
     let mut of_index = [numbers[6], numbers[7]];
-    let mut slopes = 0;
+    let (mut shapes_so_far, mut slopes) = (0, 0);
     // By index, so that the compiler sees that none is out of range.
     for k in 0..P {
         let (role, among) = (shapes.roles[k], &shapes.spread[k]);
@@ -115,18 +114,25 @@ pub(crate) fn shapes<R: Real, const P: usize>(
             continue;
         }
         let range = (bounds.lower[k], bounds.upper[k]);
-        let u = even.next().unwrap_or(own[k]);
+        let mut u = even.get(shapes_so_far).copied().unwrap_or(own[k]);
+        shapes_so_far += 1;
         match role {
             Role::Index => of_index[0] = u,
             Role::Absorption => of_index[1] = u,
-            Role::Slope => {
-                let spread = between(among, range, seen.finest, in_band(u, region, slopes));
-                x[k] = slope(spread, seen, &numbers, region, like(region).map(|like| like[k]));
-                slopes += 1;
-            }
             _ => {
-                let spread = between(among, range, R::ZERO, u);
-                x[k] = like(region).map_or(spread, |like| like[k]);
+                let mut finest = R::ZERO;
+                if role == Role::Slope {
+                    finest = seen.finest;
+                    u = in_band(u, region, slopes);
+                    slopes += 1;
+                }
+                let spread = between(among, range, finest, u);
+                let near = like(region).map_or(spread, |like| like[k]);
+                x[k] = if role == Role::Slope {
+                    slope(near, seen, &numbers, region)
+                } else {
+                    near
+                };
             }
         }
     }
@@ -155,27 +161,24 @@ fn in_band<R: Real, const P: usize>(u: R, region: Region<R, P>, slopes: usize) -
     }
 }
 
-/// A slope: `spread`, or what a pair of samples tells, or that of the region's point.
-fn slope<R: Real, const P: usize>(
-    spread: R,
-    seen: &Seen<R>,
-    numbers: &[R; NUMBERS],
-    region: Region<R, P>,
-    like: Option<R>,
-) -> R {
-    let of_pair = || pair(seen, [numbers[0], numbers[1], numbers[2]]);
-    match region {
-        Region::Index(_) => like.unwrap_or(spread),
-        Region::Slopes(_) => of_pair()
-            .unwrap_or_else(|| like.unwrap_or(spread) * (R::of(3.0) * (numbers[3] - R::of(0.5))).portable_exp()),
-        Region::Everywhere if numbers[4] < R::of(PAIRS) => of_pair().unwrap_or(spread),
-        _ => spread,
+/// A slope: `near`, or what a pair of samples tells.
+fn slope<R: Real, const P: usize>(near: R, seen: &Seen<R>, numbers: &[R; NUMBERS], region: Region<R, P>) -> R {
+    let varies = matches!(region, Region::Slopes(_));
+    if (varies || matches!(region, Region::Everywhere) && numbers[4] < R::of(PAIRS))
+        && let Some(slope) = pair(seen, numbers)
+    {
+        return slope;
+    }
+    if varies {
+        near * (R::of(3.0) * (numbers[3] - R::of(0.5))).portable_exp()
+    } else {
+        near
     }
 }
 
 /// The slope m of a peak of which two samples see nothing else: m^2 is the difference of tan^2 theta_h over that of ln f.
 #[cfg_attr(target_os = "none", inline(never))]
-fn pair<R: Real>(seen: &Seen<R>, [lobe, first, second]: [R; 3]) -> Option<R> {
+fn pair<R: Real>(seen: &Seen<R>, &[lobe, first, second, ..]: &[R; NUMBERS]) -> Option<R> {
     let near = &seen.near[usize::from(lobe > R::of(0.7))];
     // The first is more often one of the nearest.
     let pick = |u: R| near[usize::from((u * R::from(NEAR as u16)).whole()) % NEAR];
@@ -197,6 +200,7 @@ fn between<R: Real>(&[least, most]: &[R; 2], (lower, upper): (R, R), finest: R, 
 }
 
 /// Sets n and kappa^2.
+#[cfg_attr(target_os = "none", inline(never))]
 fn index<R: Real, const P: usize>(
     x: &mut [R; P],
     shapes: &Shapes<R, P>,
@@ -216,7 +220,7 @@ fn index<R: Real, const P: usize>(
     match (region, listed) {
         (Region::Index(_), Some(&[listed_n, listed_kappa])) => {
             (n, kappa2) = (Some(listed_n), Some(listed_kappa * listed_kappa));
-            fades = (listed_n, listed_kappa) == (R::of(FADING.0), R::of(FADING.1));
+            fades = i == FADING;
         }
         (Region::Slopes(_), _) if i % 4 == 1 => fades = true,
         (Region::Corner(_), _) => fades = true,
@@ -233,9 +237,8 @@ fn index<R: Real, const P: usize>(
             Role::Absorption => (kappa2, rest, R::ONE / R::from(FADE_FROM.0)),
             _ => continue,
         };
-        x[k] = match (region, chosen) {
+        x[k] = match (region, if fades { Some(fading) } else { chosen }) {
             (Region::Slopes(like), _) if i.is_multiple_of(2) => like[k],
-            _ if fades => fading.max(lower).min(upper),
             (_, Some(value)) => value.max(lower).min(upper),
             _ => between(&shapes.spread[k], (lower, upper), R::ZERO, u.max(R::ZERO)),
         };
@@ -248,10 +251,7 @@ fn index<R: Real, const P: usize>(
 
 /// Where kappa cannot be what a fading index begins with, n is.
 fn fade_by_n<R: Real, const P: usize>(x: &mut [R; P], roles: &[Role; P], bounds: &Bounds<R, P>) {
-    let mut absorbs = false;
-    for k in 0..P {
-        absorbs |= roles[k] == Role::Absorption && x[k] >= R::ONE / R::from(FADE_FROM.0);
-    }
+    let absorbs = (0..P).any(|k| roles[k] == Role::Absorption && x[k] >= R::ONE / R::from(FADE_FROM.0));
     for k in 0..P {
         if roles[k] == Role::Index && !absorbs {
             x[k] = R::of(FADE_FROM.1).max(bounds.lower[k]).min(bounds.upper[k]);

@@ -123,6 +123,7 @@ fn add_rows<R: Real, const P: usize>(
 }
 
 /// Adds a part of the sums with so many columns.
+#[cfg_attr(target_os = "none", inline(never))]
 fn add<R: Real, const P: usize>(sums: &mut Linearization<R, P>, part: &Linearization<R, P>, columns: usize) {
     sums.cost += part.cost;
     let lines = sums.gradient.iter_mut().zip(&mut sums.hessian);

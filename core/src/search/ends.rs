@@ -103,10 +103,10 @@ impl<R: Real, const P: usize, S: List<Item = Minimum<R, P>>> Ends<R, P, S> {
         self.list.first().map_or(0, |best| best.hits)
     }
 
-    /// Remembers a short fit with other slopes than the best.
+    /// Remembers a short fit, which has other slopes than the best.
     pub fn note_rival(&mut self, scene: &(impl Scene<R, P> + ?Sized), fit: &Fit<R, P>) {
-        let old = self.rival.filter(|(x, _)| self.is_elsewhere(scene, x));
-        if self.is_elsewhere(scene, &fit.x) && old.is_none_or(|(_, cost)| fit.at.cost < cost) {
+        let old = self.rival.as_ref().filter(|(x, _)| self.is_elsewhere(scene, x));
+        if old.is_none_or(|&(_, cost)| fit.at.cost < cost) {
             self.rival = Some((fit.x, fit.at.cost));
         }
     }
@@ -164,31 +164,18 @@ impl<R: Real, const P: usize, S: List<Item = Minimum<R, P>>> Ends<R, P, S> {
 
     /// Takes note that a fit ends in the end at `place`, or in a new one.
     fn end(&mut self, fit: &Fit<R, P>, place: Option<usize>, round: u32) {
-        let round = u64::from(round);
-        let (x, cost) = (fit.x, fit.at.cost);
-        let known = place.map(|place| minima::to_end(&mut self.list, place));
-        if let Some([.., end]) = known {
-            if end.first_start < round {
-                (end.hits, end.first_start) = (end.hits + 1, round);
-            }
-            if cost < end.cost {
-                (end.x, end.cost) = (x, cost);
-            }
-            minima::sift(&mut self.list);
-        } else {
-            let hits = u32::from(round > 0);
-            let first_start = round;
-            minima::insert(
-                self.list.as_mut_view(),
-                &Minimum {
-                    x,
-                    cost,
-                    hits,
-                    first_start,
-                },
-            );
+        let mut end = Minimum {
+            x: fit.x,
+            cost: fit.at.cost,
+            hits: u32::from(round > 0),
+            first_start: u64::from(round),
+        };
+        if let Some(place) = place {
+            let (hits, last) = minima::join(self.list.as_mut_view(), place, &mut end);
+            end.hits = hits + u32::from(last < end.first_start);
         }
-        if self.best.passes == 0 || minima::less(cost, self.best.at.cost) {
+        minima::insert(self.list.as_mut_view(), &end);
+        if self.best.passes == 0 || minima::less(fit.at.cost, self.best.at.cost) {
             self.best = *fit;
         }
     }

@@ -267,7 +267,6 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
     }
 
     /// Begins, whatever was there before; no pass. The arguments are those of [`super::search`].
-    #[cfg_attr(target_os = "none", inline(never))]
     pub fn begin(&mut self, bounds: &Bounds<R, P>, seed: u64, candidates: u32, options: &Options<R>) {
         (self.phase, self.task, self.kind) = (Phase::Known, Task::Choose, Kind::Everywhere);
         (self.seed, self.candidates) = (seed, candidates.max(1));

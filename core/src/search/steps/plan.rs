@@ -58,17 +58,18 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             return false;
         }
         let ends = &self.ends;
+        let first_rounds = self.round + 1 == ROUNDS || self.round == ROUNDS;
+        if !first_rounds && self.round != ROUNDS + FIRST_BANDS {
+            return self.round >= ROUNDS + CYCLES_FOLLOWED * BANDS && ends.is_below(R::of(FOLLOWED));
+        }
+        let hits = if self.round == ROUNDS { HITS.0 } else { HITS.1 };
         let agreed =
-            |hits| ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(R::of(EXACT)) && !self.flat;
-        if self.round + 1 == ROUNDS || self.round == ROUNDS {
-            let hits = if self.round == ROUNDS { HITS.0 } else { HITS.1 };
-            self.unsettled = !agreed(hits) || ends.has_rival_fit(scene) || !ends.is_below(R::of(FOLLOWED));
+            ends.best_hits() >= hits && !ends.has_rival_end(scene) && !ends.is_below(R::of(EXACT)) && !self.flat;
+        if first_rounds {
+            self.unsettled = !agreed || ends.has_rival_fit(scene) || !ends.is_below(R::of(FOLLOWED));
             return !self.unsettled;
         }
-        if self.round == ROUNDS + FIRST_BANDS {
-            return agreed(HITS.1);
-        }
-        self.round >= ROUNDS + CYCLES_FOLLOWED * BANDS && ends.is_below(R::of(FOLLOWED))
+        agreed
     }
 
     /// Is a parameter of the best end, which is not held, as large as it may be?
@@ -101,10 +102,9 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
         }
         let group = self.group;
         self.group += 1;
-        if let Some(&end) = GROUPS.get(group as usize) {
-            let before = group.checked_sub(1).and_then(|before| GROUPS.get(before as usize));
+        if let Some(&(begin, end)) = GROUPS.get(group as usize) {
             let first = self.again * VARIATIONS;
-            self.begin_round(first + before.unwrap_or(&0), first + end, Kind::Index);
+            self.begin_round(first + begin, first + end, Kind::Index);
         } else if let Some(corner) = group.checked_sub(groups + 1) {
             let first = CANDIDATES + (self.again * CORNERS + corner) * ROUND;
             self.begin_round(first, first + ROUND, Kind::Corner(corner * 5 % BANDS));

@@ -48,11 +48,11 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             self.task = Task::Weigh;
             return;
         }
-        let Candidate { x, rank, .. } = self.candidate;
+        let Candidate { x, rank, .. } = &self.candidate;
         // Narrow bounds make one of several.
-        if self.starts.iter().all(|start| start.x != x) {
+        if self.starts.iter().all(|start| start.x != *x) {
             let index = u64::from(self.next);
-            minima::insert(self.starts.as_mut_view(), &at(x, rank, index));
+            minima::insert(self.starts.as_mut_view(), &at(*x, *rank, index));
         }
         self.next += 1;
         self.task = Task::Propose;
@@ -76,8 +76,8 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
     pub(super) fn level(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
         let (place, begun) = (self.place as usize, self.begun());
         if let Some(start) = self.starts.get_mut(place) {
-            let (x, cost) = scene.level(&self.bounds, &start.x);
-            (start.x, start.cost) = (x, cost);
+            (start.x, start.cost) = scene.level(&self.bounds, &start.x);
+            let cost = start.cost;
             self.evaluations.cost += 1;
             self.ends.poorest = self.ends.poorest.max(cost);
             let last = self
@@ -161,7 +161,8 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             self.task = Task::Choose;
             return;
         };
-        if self.phase != Phase::Known {
+        let mut elsewhere = self.ends.is_elsewhere(scene, &fit.x);
+        if elsewhere && self.phase != Phase::Known {
             self.ends.note_rival(scene, fit);
         }
         let varies = self.kind == Kind::Index;
@@ -171,7 +172,7 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
             self.place == 0
         };
         // A basin where fits converge slowly would lose every round to one where they are fast.
-        let elsewhere = !varies && self.ends.is_elsewhere(scene, &fit.x);
+        elsewhere &= !varies;
         let strays = elsewhere && !self.elsewhere;
         self.elsewhere |= elsewhere;
         if first || strays || self.ends.is_near(fit.at.cost, R::of(NEAR)) {
@@ -181,7 +182,6 @@ impl<R: Real, const P: usize, M: List<Item = Minimum<R, P>>, F: List<Item = Tria
         }
     }
 
-    #[cfg_attr(target_os = "none", inline(never))]
     pub(super) fn converge(&mut self, scene: &(impl Scene<R, P> + ?Sized)) {
         let rough = self.rough();
         if let Some(Trial { fit, start }) = self.fits.get_mut(self.place as usize) {

@@ -65,16 +65,42 @@ fn main() -> ! {
         (_, false) => image::<f32>(),
         (_, true) => image::<f64>(),
     }
-    process::exit(0)
+    if USE == b'c' {
+        process::exit(0)
+    }
+    // An instrument's program does not end.
+    loop {}
 }
 
+/// Least and largest coordinates, of rho_d, rho_s, rho_v, m, n and kappa^2.
+const BOUNDS: [[f64; 6]; 2] = [[0.0, 0.0, 0.0, 1e-5, 1.0, 0.0], [1.0, 100.0, 100.0, 10.0, 100.0, 1e4]];
+
+/// Those of the terms, in both number types: constants, as firmware has them.
+const SINGLE: [[f32; P]; 2] = {
+    let (double, mut single) = (DOUBLE, [[0.0; P]; 2]);
+    let mut k = 0;
+    while k < 2 * P {
+        single[k / P][k % P] = double[k / P][k % P] as f32;
+        k += 1;
+    }
+    single
+};
+const DOUBLE: [[f64; P]; 2] = {
+    let mut bounds = [[0.0; P]; 2];
+    let mut index = 0;
+    while index < 6 {
+        if brdf::has(TERMS, index) {
+            bounds[0][brdf::slot(TERMS, index)] = BOUNDS[0][index];
+            bounds[1][brdf::slot(TERMS, index)] = BOUNDS[1][index];
+        }
+        index += 1;
+    }
+    bounds
+};
+
 fn bounds<R: Real>() -> Bounds<R, P> {
-    // Each by itself, or the image would convert them from f64 when it runs.
-    let (zero, one, hundred) = (R::ZERO, R::ONE, R::of(100.0));
-    Scan::<R, TERMS, P>::bounds(
-        &Params::from_array([zero, zero, zero, R::of(1e-5), one, zero]),
-        &Params::from_array([one, hundred, hundred, R::of(10.0), hundred, hundred]),
-    )
+    let [lower, upper] = *R::table(&SINGLE, &DOUBLE);
+    Bounds { lower, upper }
 }
 
 fn start<R: Real>() -> [R; P] {

@@ -168,7 +168,7 @@ fn filter_and_sandwich_are_those_of_the_whole_matrix() {
         ];
         for (got, v) in pairs {
             let meat = product(&turned(&rows), &product(&v, &rows));
-            for (got, exact) in got.iter().flatten().zip(meat.iter().flatten()) {
+            for (got, exact) in got.iter().zip(meat.iter().flatten()) {
                 of_covariance = of_covariance.max((got - variance * exact).abs() / variance);
             }
         }

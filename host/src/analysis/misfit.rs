@@ -6,6 +6,7 @@
 //! The covariance is the mean over all lengths and parts, by their likelihood; how much it varies among them widens the tails ([`mixture`]), as fewer degrees of freedom do.
 
 mod along;
+mod crossed;
 pub mod likelihood;
 pub mod lines;
 pub mod mixture;
@@ -162,7 +163,7 @@ impl Inflation {
     pub fn of(all: &Residuals, degrees_of_freedom: usize) -> Option<Inflation> {
         let process = nodes::likeliest(all, degrees_of_freedom, SURE)?;
         let covariance = sandwich::covariance(all, process, 1.0);
-        let trace: f64 = (0..all.columns).map(|k| covariance[k][k]).sum();
+        let trace: f64 = covariance.iter().step_by(all.columns + 1).sum();
         let factor = (trace / all.columns as f64).max(1.0);
         factor.is_finite().then_some(Inflation { process, factor })
     }
@@ -197,13 +198,13 @@ pub struct Mean {
 impl Mean {
     /// Of these processes.
     pub fn of(nodes: &[Node], degrees_of_freedom: usize) -> Mean {
-        let count = nodes.first().map_or(0, |node| node.covariance.len());
+        let count = nodes.first().map_or(0, |node| node.covariance.len().isqrt());
         let mean = |of: &dyn Fn(&Node) -> f64| nodes.iter().map(|node| node.weight * of(node)).sum::<f64>();
-        let trace = |node: &Node| (0..count).map(|k| node.covariance[k][k]).sum::<f64>();
+        let trace = |node: &Node| node.covariance.iter().step_by(count + 1).sum::<f64>();
         let size = mean(&trace);
         let sizes: Vec<(f64, f64)> = nodes.iter().map(|node| (node.weight, trace(node) / size)).collect();
         let student = mixture::matched(&sizes, degrees_of_freedom as f64);
-        let entry = |i: usize, j: usize| mean(&|node| node.covariance[i][j]) * student.variance;
+        let entry = |i: usize, j: usize| mean(&|node| node.covariance[i * count + j]) * student.variance;
         Mean {
             covariance: (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect(),
             student,
@@ -242,12 +243,13 @@ fn with(rows: &Rows, known: &Uncertainty, seen: &[usize], nodes: &[Node], priors
         priors,
     };
     let mut axes = known.axes.clone();
-    match along.inside() {
-        Some((places, covariance)) if !priors.is_empty() => {
+    let beside_priors = (!priors.is_empty()).then(|| along.inside()).flatten();
+    match beside_priors {
+        Some((places, covariance)) => {
             sandwich::turn(&mut axes, &places, &covariance);
             priors.add(known, &places, &mut axes);
         }
-        _ => sandwich::turn(&mut axes, seen, &mean.covariance),
+        None => sandwich::turn(&mut axes, seen, &mean.covariance),
     }
     // Where nothing is told of a displacement of its own, it has the factor of all together.
     let whole = Real::sqrt(mean.size * student.variance / count as f64).max(1.0);

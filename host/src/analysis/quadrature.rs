@@ -34,18 +34,25 @@ const PARTS: usize = 15;
 
 /// Places of one rule: the nodes on both sides, from the ends to the middle, and the middle once more, so that they go side by side through a formula.
 pub const PLACES: usize = 16;
-/// At each place its weights in Kronrod's and in Gauss's rule.
-const WEIGHTS: [[f64; PLACES]; 2] = {
-    let mut weights = [[0.0; PLACES]; 2];
+/// The weight of each place in Kronrod's rule.
+const KRONRODS: [f64; PLACES] = {
+    let mut weights = [0.0; PLACES];
     let mut k = 0;
     while k < PLACES - 1 {
-        weights[0][k] = KRONROD[k / 2];
-        if k / 2 % 2 == 1 {
-            weights[1][k] = GAUSS[k / 4];
-        }
+        weights[k] = KRONROD[k / 2];
         k += 1;
     }
     weights
+};
+/// The places of Gauss's rule with their weights.
+const GAUSSES: [(usize, f64); 7] = {
+    let mut places = [(0, 0.0); 7];
+    let mut k = 0;
+    while k < 7 {
+        places[k] = (k / 2 * 4 + 2 + k % 2, GAUSS[k / 2]);
+        k += 1;
+    }
+    places
 };
 
 /// Some ascending ends of parts.
@@ -149,12 +156,18 @@ fn rule<const N: usize>(
         places[2 * k + 1] = middle + half * node;
     }
     let values = f(&places);
-    let (mut kronrod, mut gauss) = ([0.0; N], [0.0; N]);
+    let mut kronrod = [0.0; N];
     for place in 0..PLACES - 1 {
-        let [of_kronrod, of_gauss] = [half * WEIGHTS[0][place], half * WEIGHTS[1][place]];
+        let of_kronrod = half * KRONRODS[place];
         for k in 0..N {
             kronrod[k] += of_kronrod * values[k][place];
-            gauss[k] += of_gauss * values[k][place];
+        }
+    }
+    // Gauss's rule tells errors alone.
+    let mut gauss = [0.0; N];
+    for (sum, values) in gauss.iter_mut().zip(&values).take(judged) {
+        for (place, weight) in GAUSSES {
+            *sum += half * weight * values[place];
         }
     }
     let error = |k: usize| {

@@ -101,7 +101,7 @@ impl Along<'_> {
         let mut nodes = self.nodes.iter();
         Common::new(&all).each(&all, &processes, |one| {
             let weight = nodes.next().map_or(0.0, |node| node.weight);
-            for (mean, one) in mean.iter_mut().flatten().zip(one.iter().flatten()) {
+            for (mean, one) in mean.iter_mut().flatten().zip(one) {
                 *mean += weight * one;
             }
         })?;

@@ -1,5 +1,7 @@
 //! Student's t that comes nearest to a mixture of such, of different scales: an error whose size is known only roughly.
 
+use std::cell::Cell;
+
 use brdfit_core::real::Real;
 
 use crate::analysis::chance::tail_of_t;
@@ -21,24 +23,81 @@ pub struct Student {
 
 /// The one with the quantiles of 68 and 95 % of a mixture: each part has a weight, of which the sum is 1, a squared scale, and `degrees` degrees of freedom.
 pub fn matched(parts: &[(f64, f64)], degrees: f64) -> Student {
-    let one = |degrees: f64, near: [f64; 2]| quantiles(&[(1.0, 1.0)], degrees, near);
-    let at_many = one(degrees.max(1.0), NORMAL);
-    let [inner, outer] = quantiles(parts, degrees, at_many);
-    // Of ln degrees: by how much the tails are too wide, which falls.
-    let too_wide = |ln: f64| {
-        let [one_inner, one_outer] = one(Real::portable_exp(ln), at_many);
-        one_outer / one_inner - outer / inner
+    let plain = Plain::of(degrees);
+    let [inner, outer] = quantiles(parts, degrees, plain.near);
+    let excess = |[one_inner, one_outer]: [f64; 2]| one_outer / one_inner - outer / inner;
+    let most = degrees.max(1.0);
+    let (degrees, own_outer) = match (excess(plain.few), excess(plain.many)) {
+        (_, at_many) if !(at_many < 0.0) => (most, plain.most[1]),
+        (at_few, _) if !(at_few > 0.0) => (1.0, plain.few[1]),
+        (at_few, at_many) => {
+            // Of ln degrees: by how much the tails are too wide, which falls.
+            let last = Cell::new((f64::NAN, f64::NAN));
+            let too_wide = |ln: f64| {
+                let degrees = Real::portable_exp(ln);
+                let one = plain.one(degrees);
+                last.set((degrees, one[1]));
+                excess(one)
+            };
+            let found = root(too_wide, (0.0, at_few), (Real::portable_ln(most), at_many));
+            let degrees = Real::portable_exp(found);
+            match last.get() {
+                (same, outer) if same == degrees => (degrees, outer),
+                _ => (degrees, plain.one(degrees)[1]),
+            }
+        }
     };
-    let (few, many) = (0.0, Real::portable_ln(degrees.max(1.0)));
-    let degrees = match (too_wide(few), too_wide(many)) {
-        (_, at_many) if !(at_many < 0.0) => degrees.max(1.0),
-        (at_few, _) if !(at_few > 0.0) => 1.0,
-        (at_few, at_many) => Real::portable_exp(root(too_wide, (few, at_few), (many, at_many))),
-    };
-    let scale = outer / one(degrees, at_many)[1];
+    let scale = outer / own_outer;
     Student {
         variance: scale * scale,
         degrees,
+    }
+}
+
+/// The quantiles that do not depend on the parts of a mixture, which scans of as many samples share.
+#[derive(Clone, Copy)]
+struct Plain {
+    /// The degrees of freedom of the parts.
+    of: f64,
+    /// Those of Student's t of these: where others begin.
+    near: [f64; 2],
+    /// The same from there, of one degree, of these through their logarithm, and of these.
+    few: [f64; 2],
+    many: [f64; 2],
+    most: [f64; 2],
+}
+
+impl Plain {
+    fn of(degrees: f64) -> Plain {
+        /// Numbers of degrees of freedom that are kept.
+        const KEPT: usize = 8;
+        const NONE: Plain = Plain {
+            of: f64::NAN,
+            near: NORMAL,
+            few: NORMAL,
+            many: NORMAL,
+            most: NORMAL,
+        };
+        thread_local! {
+            static KNOWN: Cell<[Plain; KEPT]> = const { Cell::new([NONE; KEPT]) };
+        }
+        let (mut known, place) = (KNOWN.get(), degrees as usize % KEPT);
+        if known[place].of != degrees {
+            let most = degrees.max(1.0);
+            let mut plain = Plain { of: degrees, ..NONE };
+            plain.near = plain.one(most);
+            plain.few = plain.one(1.0);
+            plain.many = plain.one(Real::portable_exp(Real::portable_ln(most)));
+            plain.most = plain.one(most);
+            known[place] = plain;
+            KNOWN.set(known);
+        }
+        known[place]
+    }
+
+    /// The quantiles of Student's t of so many degrees of freedom.
+    fn one(&self, degrees: f64) -> [f64; 2] {
+        quantiles(&[(1.0, 1.0)], degrees, self.near)
     }
 }
 

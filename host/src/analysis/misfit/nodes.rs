@@ -19,8 +19,8 @@ pub struct Node {
     pub evidence: f64,
     /// Its variance, in units of that of the residuals.
     pub variance: f64,
-    /// Covariance of the fit, in the coordinates of the rows: 1 for independent residuals.
-    pub covariance: Vec<Vec<f64>>,
+    /// Covariance of the fit, in the coordinates of the rows, one of its rows after the other: 1 for independent residuals.
+    pub covariance: Vec<f64>,
 }
 
 /// Parts of the variance that are correlated.
@@ -101,22 +101,23 @@ pub fn nodes(all: &Residuals, degrees_of_freedom: usize, evidence: f64) -> Optio
         };
         Real::portable_exp(ln - best + more)
     };
-    let total: f64 = list.iter().map(share).sum();
-    let kept: Vec<_> = list.iter().filter(|one| share(one) > 1e-4 * total).collect();
-    let total: f64 = kept.iter().map(|one| share(one)).sum();
-    let processes: Vec<(Process, f64)> = kept.iter().map(|one| (one.0, one.1.1)).collect();
+    let mut shares: Vec<(&Judged, f64)> = list.iter().map(|one| (one, share(one))).collect();
+    let total: f64 = shares.iter().map(|(_, share)| share).sum();
+    shares.retain(|(_, share)| *share > 1e-4 * total);
+    let total: f64 = shares.iter().map(|(_, share)| share).sum();
+    let processes: Vec<(Process, f64)> = shares.iter().map(|(one, _)| (one.0, one.1.1)).collect();
     if until().is_over() {
         return None;
     }
     let covariances = Common::new(all).covariances(all, &processes)?;
-    let node = |(one, covariance): (&&Judged, Vec<Vec<f64>>)| Node {
+    let node = |((one, share), covariance): (&(&Judged, f64), Vec<f64>)| Node {
         process: one.0,
-        weight: share(one) / total,
+        weight: share / total,
         evidence: one.1.0 - independent,
         variance: one.1.1,
         covariance,
     };
-    Some(kept.iter().zip(covariances).map(node).collect())
+    Some(shares.iter().zip(covariances).map(node).collect())
 }
 
 /// Lengths from a step to a part of the longest line, each 1.6 times the last; `None` without lines of two.

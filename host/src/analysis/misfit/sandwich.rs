@@ -2,7 +2,9 @@
 
 use brdfit_core::real::Real;
 
-use super::process::{Process, Residuals, step};
+use super::crossed::crossed;
+use super::likelihood::TOGETHER;
+use super::process::{Process, Residuals};
 use crate::engine::Values;
 use crate::until::until;
 
@@ -51,133 +53,88 @@ impl Common {
         common
     }
 
-    /// The sandwiches of the least-squares fit for these processes and their variances; `None` if nobody waits for them any more.
-    pub fn covariances(&self, all: &Residuals, processes: &[(Process, f64)]) -> Option<Vec<Vec<Vec<f64>>>> {
+    /// The sandwiches of the least-squares fit for these processes and their variances, each row by row; `None` if nobody waits for them any more.
+    pub fn covariances(&self, all: &Residuals, processes: &[(Process, f64)]) -> Option<Vec<Vec<f64>>> {
         let mut list = Vec::with_capacity(processes.len());
         self.each(all, processes, |covariance| list.push(covariance.to_vec()))?;
         Some(list)
     }
 
     /// Calls `take` with each of them in turn.
-    pub fn each(&self, all: &Residuals, processes: &[(Process, f64)], mut take: impl FnMut(&[Vec<f64>])) -> Option<()> {
+    pub fn each(&self, all: &Residuals, processes: &[(Process, f64)], mut take: impl FnMut(&[f64])) -> Option<()> {
         let until = until();
         let own = squared(all);
         // Of processes that differ in their part alone the sums are the same.
-        let mut known: Vec<(Process, Meat)> = Vec::new();
+        let alike = |a: &Process, b: &Process| (a.length, a.smooth) == (b.length, b.smooth);
+        let mut shapes: Vec<Process> = Vec::new();
+        for (process, _) in processes.iter().filter(|(process, _)| process.part != 0.0) {
+            // They come length by length.
+            if !shapes.iter().rev().any(|shape| alike(shape, process)) {
+                shapes.push(*process);
+            }
+        }
+        let mut sums = Vec::with_capacity(shapes.len().div_ceil(TOGETHER));
+        for shapes in shapes.chunks(TOGETHER) {
+            if until.is_over() {
+                return None;
+            }
+            let among = (self.correlation != 0.0).then(|| crossed(all, &all.offsets, Some(&self.merged), shapes));
+            sums.push((crossed(all, &all.angles, None, shapes), among));
+        }
+        let columns = all.columns;
         let mut covariance = own.clone();
         for &(process, variance) in processes {
             if until.is_over() {
                 return None;
             }
             if process.part == 0.0 {
-                for (to, own) in covariance.iter_mut().flatten().zip(own.iter().flatten()) {
+                for (to, own) in covariance.iter_mut().zip(&own) {
                     *to = variance * own;
                 }
                 take(&covariance);
                 continue;
             }
-            let alike = |(other, _): &(Process, Meat)| (other.length, other.smooth) == (process.length, process.smooth);
-            let place = known.iter().position(alike);
-            let place = place.unwrap_or_else(|| {
-                known.push((process, self.meat(all, process)));
-                known.len() - 1
-            });
-            let meat = &known[place].1;
+            let place = shapes.iter().position(|shape| alike(shape, &process))?;
+            let ((within, among), lane) = (&sums[place / TOGETHER], place % TOGETHER);
             // The noise of each sample is in no other line.
             let part = (self.correlation / process.part).min(1.0);
-            for (i, row) in covariance.iter_mut().enumerate() {
-                for (j, to) in row.iter_mut().enumerate() {
-                    let within = meat.within[i][j];
-                    let among = meat.among.as_ref().map_or(0.0, |among| part * (among[i][j] - within));
-                    *to = variance * (own[i][j] + process.part * (within + among));
+            for i in 0..columns {
+                for j in 0..=i {
+                    let at = i * (i + 1) / 2 + j;
+                    let within = within[at].0[lane];
+                    let among = among.as_ref().map_or(0.0, |among| part * (among[at].0[lane] - within));
+                    let entry = variance * (own[i * columns + j] + process.part * (within + among));
+                    (covariance[i * columns + j], covariance[j * columns + i]) = (entry, entry);
                 }
             }
             take(&covariance);
         }
         Some(())
     }
-
-    fn meat(&self, all: &Residuals, process: Process) -> Meat {
-        Meat {
-            within: crossed(all, &all.angles, process, all.lines()),
-            among: (self.correlation != 0.0)
-                .then(|| crossed(all, &all.offsets, process, [self.merged.iter().copied()])),
-        }
-    }
 }
 
-/// J'(C - 1)J with the correlations C of a process without noise of samples.
-struct Meat {
-    /// Of lines that have nothing in common.
-    within: Vec<Vec<f64>>,
-    /// Of lines that are alike at equal offsets.
-    among: Option<Vec<Vec<f64>>>,
-}
-
-/// The sandwich of the least-squares fit where lines have nothing in common.
-pub fn covariance(all: &Residuals, process: Process, variance: f64) -> Vec<Vec<f64>> {
-    let crossed = crossed(all, &all.angles, process, all.lines());
-    let mut sums = squared(all);
-    for (sum, crossed) in sums.iter_mut().flatten().zip(crossed.iter().flatten()) {
-        *sum = variance * (*sum + process.part * crossed);
+/// The sandwich of the least-squares fit where lines have nothing in common, row by row.
+pub fn covariance(all: &Residuals, process: Process, variance: f64) -> Vec<f64> {
+    let crossed = crossed(all, &all.angles, None, &[process]);
+    let (columns, mut sums) = (all.columns, squared(all));
+    for (place, sum) in sums.iter_mut().enumerate() {
+        let (i, j) = (place / columns, place % columns);
+        let (i, j) = (i.max(j), i.min(j));
+        *sum = variance * (*sum + process.part * crossed[i * (i + 1) / 2 + j].0[0]);
     }
     sums
 }
 
-/// J'J.
-fn squared(all: &Residuals) -> Vec<Vec<f64>> {
-    let mut sums = vec![vec![0.0; all.columns]; all.columns];
-    for row in all.rows.chunks_exact(all.columns) {
-        for (sums, x) in sums.iter_mut().zip(row) {
+/// J'J, row by row.
+fn squared(all: &Residuals) -> Vec<f64> {
+    let columns = all.columns;
+    let mut sums = vec![0.0; columns * columns];
+    for row in all.rows.chunks_exact(columns) {
+        for (sums, x) in sums.chunks_exact_mut(columns).zip(row) {
             sums.iter_mut().zip(row).for_each(|(sum, y)| *sum += x * y);
         }
     }
     sums
-}
-
-/// The sum of both orders of each two rows of a line, whose angles ascend, times their correlation.
-fn crossed<L: IntoIterator<Item = usize>>(
-    all: &Residuals,
-    angles: &[f64],
-    process: Process,
-    lines: impl IntoIterator<Item = L>,
-) -> Vec<Vec<f64>> {
-    let columns = all.columns;
-    let mut sums = vec![vec![0.0; columns]; columns];
-    // The rows before, by their correlation with the next, and by its change.
-    let mut before = vec![[0.0; 2]; columns];
-    for line in lines {
-        before.fill([0.0; 2]);
-        let mut last: Option<usize> = None;
-        for place in line {
-            if let Some(last) = last {
-                // The correlation over x is the first row of the step; with a row more it is that of the sum.
-                let [[a, b], [c, d]] = step(angles[place] - angles[last], process);
-                for (sum, row) in before.iter_mut().zip(all.row(last)) {
-                    let [value, slope] = [sum[0] + row, sum[1]];
-                    *sum = [a * value + b * slope, c * value + d * slope];
-                }
-            }
-            last = Some(place);
-            let row = all.row(place);
-            for i in 0..columns {
-                for j in 0..=i {
-                    sums[i][j] += row[i] * before[j][0] + before[i][0] * row[j];
-                }
-            }
-        }
-    }
-    mirrored(sums)
-}
-
-/// A symmetric matrix of which the lower triangle is known.
-fn mirrored(mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
-    for i in 0..matrix.len() {
-        for j in 0..i {
-            matrix[j][i] = matrix[i][j];
-        }
-    }
-    matrix
 }
 
 /// The axes in these places become those of this covariance, which is in coordinates along them.

@@ -1,0 +1,108 @@
+//! The sums that a sandwich is made of, for several processes side by side.
+
+use brdfit_core::pack::Pack;
+use brdfit_core::real::Real;
+
+use super::likelihood::TOGETHER;
+use super::process::{Process, Residuals, SMOOTH};
+use crate::engine::simd::{NullaryFnOnce, Simd};
+
+type Lanes = Pack<f64, TOGETHER>;
+
+/// J'(C - 1)J with the correlations C of each of up to [`TOGETHER`] processes without noise of samples, whose part does not count: its lower triangle, row by row.
+///
+/// Angles ascend along each line; the lines are those of the residuals, or all in one, in the order of `merged`.
+pub fn crossed(all: &Residuals, angles: &[f64], merged: Option<&[usize]>, processes: &[Process]) -> Vec<Lanes> {
+    // Lanes that are left over repeat the last.
+    let lane = |k: usize| processes[k.min(processes.len() - 1)];
+    Simd::best().run(Crossed {
+        all,
+        angles,
+        merged,
+        length: Lanes::from_fn(|k| lane(k).length),
+        smooth: Lanes::from_fn(|k| f64::from(u8::from(lane(k).smooth))),
+    })
+}
+
+/// The sum of both orders of each two rows of a line times their correlation.
+struct Crossed<'a> {
+    all: &'a Residuals,
+    angles: &'a [f64],
+    merged: Option<&'a [usize]>,
+    length: Lanes,
+    /// 1 where it is, else 0.
+    smooth: Lanes,
+}
+
+impl NullaryFnOnce for Crossed<'_> {
+    type Output = Vec<Lanes>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Lanes> {
+        let zero = Lanes::splat(0.0);
+        let columns = self.all.columns;
+        let mut sums = vec![zero; columns * (columns + 1) / 2];
+        // The rows before, by their correlation with the next, and by its change.
+        let mut before = vec![[zero; 2]; columns];
+        match self.merged {
+            Some(merged) => self.add(merged.iter().copied(), &mut before, &mut sums),
+            None => {
+                for line in self.all.lines() {
+                    before.fill([zero; 2]);
+                    self.add(line, &mut before, &mut sums);
+                }
+            }
+        }
+        sums
+    }
+}
+
+impl Crossed<'_> {
+    /// Adds those of a line.
+    #[inline(always)]
+    fn add(&self, line: impl Iterator<Item = usize>, before: &mut [[Lanes; 2]], sums: &mut [Lanes]) {
+        let mut last: Option<usize> = None;
+        for place in line {
+            if let Some(last) = last {
+                // The correlation over x is the first row of the step; with a row more it is that of the sum.
+                let [[a, b], [c, d]] = self.step(self.angles[place] - self.angles[last]);
+                for ([sum, slope], &row) in before.iter_mut().zip(self.all.row(last)) {
+                    let value = *sum + row;
+                    (*sum, *slope) = (a * value + b * *slope, c * value + d * *slope);
+                }
+            }
+            last = Some(place);
+            let row = self.all.row(place);
+            let mut rest = &mut sums[..];
+            for (i, &x) in row.iter().enumerate() {
+                let (here, after) = rest.split_at_mut(i + 1);
+                for ((sum, &y), before_y) in here.iter_mut().zip(row).zip(before.iter()) {
+                    *sum = *sum + (before_y[0] * x + before[i][0] * y);
+                }
+                rest = after;
+            }
+        }
+    }
+
+    /// [`super::process::step`] of each, with its bits.
+    #[inline(always)]
+    fn step(&self, angle: f64) -> [[Lanes; 2]; 2] {
+        let pick = |smooth: Lanes, rough: Lanes| {
+            Lanes::from_fn(|k| {
+                if self.smooth.0[k] > 0.0 {
+                    smooth.0[k]
+                } else {
+                    rough.0[k]
+                }
+            })
+        };
+        let x = pick(Lanes::splat(SMOOTH * angle), Lanes::splat(angle)) / self.length;
+        let e = x.map(|x| -Real::min(x, 700.0)).exp();
+        let zero = Lanes::splat(0.0);
+        let [more, less] = [x.map(|x| 1.0 + x), x.map(|x| 1.0 - x)];
+        [
+            [pick(e * more, e), pick(e * x, zero)],
+            [pick((e * x).map(|x| -x), zero), pick(e * less, zero)],
+        ]
+    }
+}

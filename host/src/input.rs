@@ -25,6 +25,7 @@ mod incidence;
 mod join;
 pub mod kind;
 mod large_sigma;
+mod lately;
 pub mod left_out;
 mod marks;
 pub mod measurement;

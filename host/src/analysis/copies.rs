@@ -26,9 +26,24 @@ pub fn directions(samples: &[Sample<f64>], most: usize) -> usize {
 
 /// Samples with the direction and the value of another before them.
 pub fn copies(samples: &[Sample<f64>]) -> usize {
-    let mut seen = HashSet::with_capacity(samples.len());
+    /// Up to so many samples it takes less time to compare each two.
+    const FEW: usize = 64;
     let counted = samples.iter().filter(|sample| sample.weight != 0.0);
-    let again = |sample: &&Sample<f64>| !seen.insert((direction(sample), sample.brdf.to_bits()));
+    let key = |sample: &Sample<f64>| (direction(sample), sample.brdf.to_bits());
+    if samples.len() > FEW {
+        let mut seen = HashSet::with_capacity(samples.len());
+        return counted.filter(|sample| !seen.insert(key(sample))).count();
+    }
+    let (mut seen, mut count) = ([Default::default(); FEW], 0);
+    let again = |sample: &&Sample<f64>| {
+        let key = key(sample);
+        let is_known = seen[..count].contains(&key);
+        if !is_known {
+            seen[count] = key;
+            count += 1;
+        }
+        is_known
+    };
     counted.filter(again).count()
 }
 

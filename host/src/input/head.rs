@@ -1,5 +1,8 @@
 //! What the head of a column says: its name, its unit, its coverage factor.
 
+use std::cell::RefCell;
+
+use super::lately::Lately;
 use super::unit::Unit;
 
 /// The head of a column.
@@ -20,6 +23,13 @@ pub struct Head {
 impl Head {
     /// Takes a head apart: `Theta_i [deg]`, `lambda / nm`, `BRDF (1/sr)`, `wavelength_um`, `U (k=2)`.
     pub fn new(text: &str) -> Head {
+        thread_local! {
+            static LATELY: RefCell<Lately<String, Head>> = const { RefCell::new(Lately::new()) };
+        }
+        LATELY.with_borrow_mut(|lately| lately.of(text, || Head::taken_apart(text)))
+    }
+
+    fn taken_apart(text: &str) -> Head {
         let mut head = Head {
             text: text.trim().to_string(),
             plain: String::new(),

@@ -1,8 +1,11 @@
 //! What a column holds, by the words of its name.
 
+use std::cell::RefCell;
+
 use serde::Serialize;
 
 use super::head::Head;
+use super::lately::Lately;
 use super::spell::{Word, spell};
 use super::unit::Unit;
 use super::units::Quantity;
@@ -90,6 +93,13 @@ const QUANTITIES: [&[&str]; 6] = [
 
 /// What the column of this head holds.
 pub fn role(head: &Head) -> Role {
+    thread_local! {
+        static LATELY: RefCell<Lately<Head, Role>> = const { RefCell::new(Lately::new()) };
+    }
+    LATELY.with_borrow_mut(|lately| lately.of(head, || found(head)))
+}
+
+fn found(head: &Head) -> Role {
     let plain = head.plain.as_str();
     if let Some(quantity) = quantity(plain) {
         return Role::Value(quantity);

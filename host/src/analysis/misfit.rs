@@ -32,7 +32,7 @@ use mixture::Student;
 use nodes::Node;
 use priors::Priors;
 use process::{Process, Residuals};
-use rows::Rows;
+use rows::{Rows, UNIT};
 
 /// ln of the likelihood must be above that of independence by more than this, which four in ten scans with independent errors reach; below it errors are those of independent residuals.
 ///
@@ -40,8 +40,6 @@ use rows::Rows;
 pub const EVIDENCE: f64 = 0.0;
 /// It must be surer to be called a fact, where one process stands for all, and to speak against a file's standard deviations: 4 % of scans with independent errors reach this.
 pub const SURE: f64 = 2.0;
-/// Rows of J along an axis of one standard error have a length of 1; what is far from that is no such axis.
-const UNIT: std::ops::Range<f64> = 0.5..2.0;
 /// Of an axis that is known from a prior the samples' part; less is rounding.
 const LITTLE: f64 = 1e-6;
 

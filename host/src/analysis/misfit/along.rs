@@ -5,10 +5,9 @@
 use brdfit_core::real::Real;
 use brdfit_core::uncertainty::Place;
 
-use super::UNIT;
 use super::nodes::Node;
 use super::priors::Priors;
-use super::rows::Rows;
+use super::rows::{Rows, UNIT};
 use super::sandwich::{Common, turn};
 use crate::engine::Values;
 use crate::engine::uncertainty::Uncertainty;

@@ -10,6 +10,8 @@ use crate::until::until;
 
 /// Residuals that a thread takes at once; of longer scans nothing is kept of each sample but its place.
 const SHARE: usize = 4096;
+/// Rows of J along an axis of one standard error have a squared length of 1; what is far from that is no such axis.
+pub const UNIT: std::ops::Range<f64> = 0.5..2.0;
 
 /// The samples of a scan along its lines, and what a fit makes of them.
 pub struct Rows<'a> {

@@ -75,17 +75,15 @@ fn packages(lock: &str) -> Vec<(&str, &str)> {
 fn host_and_firmware_use_the_same_versions() {
     let host = packages(include_str!("../Cargo.lock"));
     let firmware = packages(include_str!("firmware/Cargo.lock"));
-    let version = |list: &[(&str, &str)]| {
-        list.iter()
-            .find(|package| package.0 == "libm")
-            .map(|package| package.1.to_owned())
-    };
-    assert!(version(&host).is_some(), "libm is no longer there");
-    assert_eq!(
-        version(&host),
-        version(&firmware),
-        "libm: run tests/firmware/run --bless"
-    );
+    for name in ["libm", "rand_xoshiro"] {
+        let of = |list: &[(&str, &str)]| {
+            list.iter()
+                .find(|package| package.0 == name)
+                .map(|package| package.1.to_owned())
+        };
+        assert!(of(&host).is_some(), "{name} is no longer there");
+        assert_eq!(of(&host), of(&firmware), "{name}: run tests/firmware/run --bless");
+    }
 }
 
 /// What a model of one's own takes: a formula and its parameters.

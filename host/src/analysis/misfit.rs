@@ -45,7 +45,7 @@ const LITTLE: f64 = 1e-6;
 
 /// The uncertainty of a fit of these samples, with the correlation of its residuals if independence is refuted, and none if it is exact.
 ///
-/// What priors leave open stands behind the axes of the parameters ([`priors`]).
+/// What priors leave open stands behind the axes of the parameters.
 pub fn uncertainty(samples: &[Sample<f64>], options: &FitOptions, outcome: &Outcome) -> Uncertainty {
     with_evidence(samples, options, outcome, EVIDENCE)
 }

@@ -7,6 +7,7 @@
 
 mod along;
 mod crossed;
+mod lanes;
 pub mod likelihood;
 pub mod lines;
 pub mod mixture;

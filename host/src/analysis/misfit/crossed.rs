@@ -1,26 +1,18 @@
 //! The sums that a sandwich is made of, for several processes side by side.
 
-use brdfit_core::pack::Pack;
-use brdfit_core::real::Real;
-
-use super::likelihood::TOGETHER;
-use super::process::{Process, Residuals, SMOOTH};
+use super::lanes::{Falls, Lanes};
+use super::process::{Process, Residuals};
 use crate::engine::simd::{NullaryFnOnce, Simd};
 
-type Lanes = Pack<f64, TOGETHER>;
-
-/// J'(C - 1)J with the correlations C of each of up to [`TOGETHER`] processes without noise of samples, whose part does not count: its lower triangle, row by row.
+/// J'(C - 1)J with the correlations C of each of up to as many processes as [`Lanes`] has, without noise of samples, whose part does not count: its lower triangle, row by row.
 ///
 /// Angles ascend along each line; the lines are those of the residuals, or all in one, in the order of `merged`.
 pub fn crossed(all: &Residuals, angles: &[f64], merged: Option<&[usize]>, processes: &[Process]) -> Vec<Lanes> {
-    // Lanes that are left over repeat the last.
-    let lane = |k: usize| processes[k.min(processes.len() - 1)];
     Simd::best().run(Crossed {
         all,
         angles,
         merged,
-        length: Lanes::from_fn(|k| lane(k).length),
-        smooth: Lanes::from_fn(|k| f64::from(u8::from(lane(k).smooth))),
+        falls: Falls::of(processes),
     })
 }
 
@@ -29,9 +21,7 @@ struct Crossed<'a> {
     all: &'a Residuals,
     angles: &'a [f64],
     merged: Option<&'a [usize]>,
-    length: Lanes,
-    /// 1 where it is, else 0.
-    smooth: Lanes,
+    falls: Falls,
 }
 
 impl NullaryFnOnce for Crossed<'_> {
@@ -87,17 +77,8 @@ impl Crossed<'_> {
     /// [`super::process::step`] of each, with its bits.
     #[inline(always)]
     fn step(&self, angle: f64) -> [[Lanes; 2]; 2] {
-        let pick = |smooth: Lanes, rough: Lanes| {
-            Lanes::from_fn(|k| {
-                if self.smooth.0[k] > 0.0 {
-                    smooth.0[k]
-                } else {
-                    rough.0[k]
-                }
-            })
-        };
-        let x = pick(Lanes::splat(SMOOTH * angle), Lanes::splat(angle)) / self.length;
-        let e = x.map(|x| -Real::min(x, 700.0)).exp();
+        let (x, e) = self.falls.over(angle);
+        let pick = |smooth, rough| self.falls.pick(smooth, rough);
         let zero = Lanes::splat(0.0);
         let [more, less] = [x.map(|x| 1.0 + x), x.map(|x| 1.0 - x)];
         [

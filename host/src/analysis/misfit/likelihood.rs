@@ -1,15 +1,10 @@
 //! The likelihood of a process, given what a least-squares fit leaves.
 
-use brdfit_core::pack::Pack;
 use brdfit_core::real::Real;
 
-use super::process::{Process, Residuals, SMOOTH};
+use super::lanes::{Falls, Lanes, TOGETHER, each};
+use super::process::{Process, Residuals};
 use crate::engine::simd::{NullaryFnOnce, Simd};
-
-/// Processes that go through the filter side by side.
-pub const TOGETHER: usize = 8;
-
-type Lanes = Pack<f64, TOGETHER>;
 
 /// For each process ln of the restricted likelihood of the residuals, but for a constant, and the variance that fits best; `degrees` is their number less that of the columns.
 ///
@@ -17,13 +12,10 @@ type Lanes = Pack<f64, TOGETHER>;
 pub fn likelihoods(all: &Residuals, processes: &[Process], degrees: f64) -> Vec<(f64, f64)> {
     let simd = Simd::best();
     let one = |processes: &[Process]| {
-        // Lanes that are left over repeat the last.
-        let lane = |k: usize| processes[k.min(processes.len() - 1)];
         let [ln_determinant, ln_columns, rest] = simd.run(Filter {
             all,
-            length: Lanes::from_fn(|k| lane(k).length),
-            part: Lanes::from_fn(|k| lane(k).part),
-            smooth: Lanes::from_fn(|k| f64::from(u8::from(lane(k).smooth))),
+            falls: Falls::of(processes),
+            part: each(processes, |process| process.part),
         });
         let of = move |k: usize| {
             let ln = -0.5 * (degrees * Real::portable_ln(rest.0[k]) + ln_determinant.0[k] + ln_columns.0[k]);
@@ -37,10 +29,8 @@ pub fn likelihoods(all: &Residuals, processes: &[Process], degrees: f64) -> Vec<
 /// Gives ln of the determinants of V and of J'V^-1 J, and what of the squares of the residuals is beyond J.
 struct Filter<'a> {
     all: &'a Residuals,
-    length: Lanes,
+    falls: Falls,
     part: Lanes,
-    /// 1 where it is, else 0.
-    smooth: Lanes,
 }
 
 impl NullaryFnOnce for Filter<'_> {
@@ -106,21 +96,11 @@ impl Filter<'_> {
     /// [`super::process::step`] of each.
     #[inline(always)]
     fn step(&self, angle: f64) -> [[Lanes; 2]; 2] {
-        let pick = |smooth: Lanes, rough: Lanes| {
-            Lanes::from_fn(|k| {
-                if self.smooth.0[k] > 0.0 {
-                    smooth.0[k]
-                } else {
-                    rough.0[k]
-                }
-            })
-        };
-        let x = pick(Lanes::splat(SMOOTH * angle), Lanes::splat(angle)) / self.length;
-        let e = x.map(|x| -Real::min(x, 700.0)).exp();
+        let (x, e) = self.falls.over(angle);
         let (zero, slope) = (Lanes::splat(0.0), e * x);
         [
-            [pick(e + slope, e), pick(slope, zero)],
-            [pick(zero - slope, zero), pick(e - slope, zero)],
+            [self.falls.pick(e + slope, e), self.falls.pick(slope, zero)],
+            [self.falls.pick(zero - slope, zero), self.falls.pick(e - slope, zero)],
         ]
     }
 }

@@ -3,7 +3,8 @@
 use brdfit_core::real::Real;
 use rayon::prelude::*;
 
-use super::likelihood::{TOGETHER, likelihoods};
+use super::lanes::TOGETHER;
+use super::likelihood::likelihoods;
 use super::process::{Process, Residuals};
 use super::sandwich::Common;
 use crate::until::until;

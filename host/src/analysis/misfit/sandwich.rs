@@ -3,7 +3,7 @@
 use brdfit_core::real::Real;
 
 use super::crossed::crossed;
-use super::likelihood::TOGETHER;
+use super::lanes::TOGETHER;
 use super::process::{Process, Residuals};
 use crate::engine::Values;
 use crate::until::until;

@@ -79,32 +79,11 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     /// [`Scene::level`], given what [`Residuals::inlined_totals`] are at `x`.
     ///
     /// f in proportion to c has the residuals r + w ln c of ln f, so the best c and its cost follow from the sums of r^2, w r and w^2.
-    pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], [squares, residuals, weights]: [R; 3]) -> ([R; P], R) {
+    pub fn levelled(bounds: &Bounds<R, P>, x: &[R; P], sums: [R; 3]) -> ([R; P], R) {
         if Self::WEIGHTS_END == 0 {
-            return (*x, squares);
+            return (*x, sums[0]);
         }
-        let roles = const { propose::roles(&M::PARAMETERS) };
-        let (mut least, mut most) = (R::ZERO, R::MAX);
-        for k in 0..P {
-            if roles[k] == Role::Weight && x[k] > R::ZERO {
-                least = least.max(bounds.lower[k] / x[k]);
-                most = most.min(bounds.upper[k] / x[k]);
-            }
-        }
-        let scale = (-residuals / weights).portable_exp().max(least).min(most);
-        let ln_scale = scale.portable_ln();
-        let cost = squares + ln_scale * (residuals + residuals + ln_scale * weights);
-        if !(least < most && cost < squares) {
-            return (*x, squares);
-        }
-        let mut levelled = *x;
-        for k in 0..P {
-            if roles[k] == Role::Weight {
-                levelled[k] *= scale;
-            }
-        }
-        bounds.keep(&mut levelled);
-        (levelled, cost)
+        level(bounds, x, sums, const { &propose::roles(&M::PARAMETERS) })
     }
 
     /// Sets the weights to the least squares of f / f_measured - 1 within their bounds, and the rank to its sum, less what it is at the lower bounds; given what [`Residuals::inlined_weights`] are, which is one pass.
@@ -217,6 +196,37 @@ const fn has_index<const P: usize>(parameters: &[Parameter; P]) -> bool {
         k += 1;
     }
     false
+}
+
+/// [`Residuals::levelled`] of a model that has weights.
+#[cfg_attr(target_os = "none", inline(always))]
+fn level<R: Real, const P: usize>(
+    bounds: &Bounds<R, P>,
+    x: &[R; P],
+    [squares, residuals, weights]: [R; 3],
+    roles: &[Role; P],
+) -> ([R; P], R) {
+    let (mut least, mut most) = (R::ZERO, R::MAX);
+    for k in 0..P {
+        if roles[k] == Role::Weight && x[k] > R::ZERO {
+            least = least.max(bounds.lower[k] / x[k]);
+            most = most.min(bounds.upper[k] / x[k]);
+        }
+    }
+    let scale = (-residuals / weights).portable_exp().max(least).min(most);
+    let ln_scale = scale.portable_ln();
+    let cost = squares + ln_scale * (residuals + residuals + ln_scale * weights);
+    if !(least < most && cost < squares) {
+        return (*x, squares);
+    }
+    let mut levelled = *x;
+    for k in 0..P {
+        if roles[k] == Role::Weight {
+            levelled[k] *= scale;
+        }
+    }
+    bounds.keep(&mut levelled);
+    (levelled, cost)
 }
 
 /// Sets the weights of `x` to those within bounds that solve `hessian weights = gradient` best; their sum of squares, less what it is at the lower bounds. The sums are used up.

@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::bend::{FINEST, bend, peak, ratio};
-use crate::brdf::{Brdf, EVERY, SECOND, Shifts, WEIGHT, get, has, lobes, pair, place, slot};
+use crate::brdf::{Brdf, EVERY, SECOND, Shifts, WEIGHT, has, lobes, pair, place, slot};
 use crate::geometry::{Block, LANES, SampleError};
 use crate::lm::Bounds;
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
@@ -155,60 +155,90 @@ where
     }
 
     fn seen(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
-        let mut seen = Seen::nothing();
-        let mut third = R::MAX;
-        for pair in 0..2 {
-            let (cos_theta_d, of_pair) = peak(blocks, [pair, 2 + pair], &mut seen.near[pair]);
-            seen.peaks.0[pair] = cos_theta_d;
-            third = third.min(of_pair);
-        }
-        seen.finest = R::of(FINEST) * third.sqrt();
-        seen
+        seen(blocks)
     }
 
     fn keep_heights(seen: &Seen<R>, like: &[R; P], x: &mut [R; P]) {
-        let index = |x: &[R; P]| [get(TERMS, x, 4, R::ONE), get(TERMS, x, 5, R::ZERO)];
-        let ratio = ratio(index(like), index(x), &seen.peaks);
-        if let Some(rho_d) = x.get_mut(const { place(TERMS, 0) }) {
-            *rho_d = get(TERMS, like, 0, R::ZERO);
-        }
-        for &(place, pair) in const { &weights_of_lobes(TERMS) } {
-            if let Some((rho, &old)) = x.get_mut(place).zip(like.get(place)) {
-                *rho = old * ratio[pair % 2];
-            }
-        }
+        let places = const { [place(TERMS, 0), place(TERMS, 4), place(TERMS, 5)] };
+        keep_heights(seen, like, x, places, const { &weights_of_lobes(TERMS) });
     }
 
-    /// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
     fn fade(x: &mut [R; P], bounds: &Bounds<R, P>) -> bool {
-        let weights = const { &weights_of_lobes(TERMS) };
-        let mut part = R::ZERO;
-        for &(place, _) in weights {
-            if let Some((&rho, &most)) = x.get(place).zip(bounds.upper.get(place)) {
-                part = part.max(rho / most);
-            }
-        }
-        if !(part > R::ZERO) {
-            return false;
-        }
-        // Not so far up that F is no longer in proportion.
-        let part = part.min(R::of(10.0));
-        if let Some(n) = x.get_mut(const { place(TERMS, 4) }) {
-            *n = R::ONE + (*n - R::ONE) * part.sqrt();
-        }
-        if let Some(kappa2) = x.get_mut(const { place(TERMS, 5) }) {
-            *kappa2 *= part;
-        }
-        for &(place, _) in weights {
-            if let Some((rho, &most)) = x.get_mut(place).zip(bounds.upper.get(place)) {
-                *rho = (*rho / part).min(most);
-            }
-        }
-        true
+        let index = const { [place(TERMS, 4), place(TERMS, 5)] };
+        fade(x, bounds, index, const { &weights_of_lobes(TERMS) })
     }
 
     fn bend(seen: &Seen<R>, x: &[R; P], step: &[R; P], to: [R; P]) -> [R; P] {
         let index = const { [place(TERMS, 4), place(TERMS, 5)] };
         bend(x, step, to, index, const { &weights_of_lobes(TERMS) }, &seen.peaks)
     }
+}
+
+// What follows takes the places of parameters as numbers: it is compiled once for all models of as many parameters.
+
+#[cfg_attr(target_os = "none", inline(always))]
+fn seen<R: Real, const C: usize>(blocks: &[Block<R, LANES, C>]) -> Seen<R> {
+    let mut seen = Seen::nothing();
+    let mut third = R::MAX;
+    for pair in 0..2 {
+        let (cos_theta_d, of_pair) = peak(blocks, [pair, 2 + pair], &mut seen.near[pair]);
+        seen.peaks.0[pair] = cos_theta_d;
+        third = third.min(of_pair);
+    }
+    seen.finest = R::of(FINEST) * third.sqrt();
+    seen
+}
+
+#[cfg_attr(target_os = "none", inline(always))]
+fn keep_heights<R: Real, const P: usize>(
+    seen: &Seen<R>,
+    like: &[R; P],
+    x: &mut [R; P],
+    [rho_d, n, kappa2]: [usize; 3],
+    weights: &[(usize, usize); WEIGHT.len()],
+) {
+    let at = |x: &[R; P], place: usize, absent: R| x.get(place).copied().unwrap_or(absent);
+    let index = |x: &[R; P]| [at(x, n, R::ONE), at(x, kappa2, R::ZERO)];
+    let ratio = ratio(index(like), index(x), &seen.peaks);
+    if let Some(x) = x.get_mut(rho_d) {
+        *x = at(like, rho_d, R::ZERO);
+    }
+    for &(place, pair) in weights {
+        if let Some((rho, &old)) = x.get_mut(place).zip(like.get(place)) {
+            *rho = old * ratio[pair % 2];
+        }
+    }
+}
+
+/// As n goes to 1 and kappa to 0, F goes to 0 in proportion to |n - i kappa - 1|^2.
+#[cfg_attr(target_os = "none", inline(always))]
+fn fade<R: Real, const P: usize>(
+    x: &mut [R; P],
+    bounds: &Bounds<R, P>,
+    [n, kappa2]: [usize; 2],
+    weights: &[(usize, usize); WEIGHT.len()],
+) -> bool {
+    let mut part = R::ZERO;
+    for &(place, _) in weights {
+        if let Some((rho, &most)) = x.get(place).zip(bounds.upper.get(place)) {
+            part = part.max(*rho / most);
+        }
+    }
+    if !(part > R::ZERO) {
+        return false;
+    }
+    // Not so far up that F is no longer in proportion.
+    let part = part.min(R::of(10.0));
+    if let Some(n) = x.get_mut(n) {
+        *n = R::ONE + (*n - R::ONE) * part.sqrt();
+    }
+    if let Some(kappa2) = x.get_mut(kappa2) {
+        *kappa2 *= part;
+    }
+    for &(place, _) in weights {
+        if let Some((rho, &most)) = x.get_mut(place).zip(bounds.upper.get(place)) {
+            *rho = (*rho / part).min(most);
+        }
+    }
+    true
 }

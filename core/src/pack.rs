@@ -2,6 +2,24 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
+/// Does something for each of the places below `K`; written out for the first, as the compiler takes far longer to see through thousands of short loops.
+macro_rules! each {
+    ($count:ident, |$k:ident| $done:expr) => {
+        each!($count, $k, $done, 0, 1, 2, 3, 4, 5);
+        if const { $count > 6 } {
+            for $k in 6..$count {
+                $done;
+            }
+        }
+    };
+    ($count:ident, $k:ident, $done:expr, $($place:literal),+) => {
+        $(if const { $count > $place } {
+            let $k = $place;
+            $done;
+        })+
+    };
+}
+
 /// `K` numbers; each operation is made for all of them before the next.
 ///
 /// A processor looks only some hundred instructions ahead: the links of one long chain leave it idle, those of `K` chains in turn do not.
@@ -19,9 +37,7 @@ impl<R: Copy + Default, const K: usize> Pack<R, K> {
     #[inline(always)]
     pub fn from_fn(f: impl Fn(usize) -> R) -> Self {
         let mut all = [R::default(); K];
-        for (k, x) in all.iter_mut().enumerate() {
-            *x = f(k);
-        }
+        each!(K, |k| all[k] = f(k));
         Pack(all)
     }
     /// One of each `L / K` of a row, from `lane` on.
@@ -32,17 +48,13 @@ impl<R: Copy + Default, const K: usize> Pack<R, K> {
     /// One function of each.
     #[inline(always)]
     pub fn map(mut self, f: impl Fn(R) -> R) -> Self {
-        for x in &mut self.0 {
-            *x = f(*x);
-        }
+        each!(K, |k| self.0[k] = f(self.0[k]));
         self
     }
     /// One function of each pair.
     #[inline(always)]
     pub fn zip(mut self, other: Self, f: impl Fn(R, R) -> R) -> Self {
-        for k in 0..K {
-            self.0[k] = f(self.0[k], other.0[k]);
-        }
+        each!(K, |k| self.0[k] = f(self.0[k], other.0[k]));
         self
     }
 }

@@ -65,7 +65,7 @@ impl<R: Real, M: Model<R, P, C>, const P: usize, const C: usize> Residuals<'_, R
     }
 
     /// The sums over one of the first eight lanes, and its other half, of all blocks; of J'J the lower half.
-    #[cfg_attr(target_os = "none", inline(never))]
+    #[inline(never)]
     fn partial(&self, pass: &M::Pass, lane: usize, want: Want, columns: usize, sums: &mut Linearization<R, P>) {
         *sums = Linearization::zero();
         let mut rows = [[R::ZERO; P]; GROUP];

@@ -1,11 +1,11 @@
 //! The passes over a scan, compiled for a model: all that is, of a search.
 
 use brdfit_core::brdf::ALL;
-use brdfit_core::geometry::{Block, LANES, Sample};
+use brdfit_core::geometry::{Block, LANES, Observation, Sample, SampleError};
 use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::{Model, Parameter};
 use brdfit_core::real::Real;
-use brdfit_core::residuals::{Residuals, ln_f, observe};
+use brdfit_core::residuals::{Residuals, ln_f};
 use brdfit_core::search::Scene;
 
 use crate::error::FitError;
@@ -39,16 +39,22 @@ pub fn blocks<R: Real>(samples: &[Sample<f64>]) -> Result<Vec<Block<R>>, FitErro
 pub fn blocks_of<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(
     samples: &[Sample<f64>],
 ) -> Result<Vec<Block<R, LANES, C>>, FitError> {
+    blocks_by(samples, M::geometry)
+}
+
+/// [`Model::geometry`] of some model.
+type GeometryOf<R, const C: usize> = fn(R, R, R) -> Result<[R; C], SampleError>;
+
+/// The same for all models of as many numbers, so that it is compiled once.
+fn blocks_by<R: Real, const C: usize>(
+    samples: &[Sample<f64>],
+    geometry: GeometryOf<R, C>,
+) -> Result<Vec<Block<R, LANES, C>>, FitError> {
     let mut blocks = vec![Block::EMPTY; samples.len().div_ceil(LANES)];
     for (index, sample) in samples.iter().enumerate() {
-        let sample = Sample {
-            theta_i: R::of(sample.theta_i),
-            theta_s: R::of(sample.theta_s),
-            delta_phi: R::of(sample.delta_phi),
-            brdf: R::of(sample.brdf),
-            weight: R::of(sample.weight),
-        };
-        let observation = observe::<R, M, P, C>(&sample).map_err(|error| FitError::Sample(index, error))?;
+        let observation = geometry(R::of(sample.theta_i), R::of(sample.theta_s), R::of(sample.delta_phi))
+            .and_then(|geometry| Observation::at(geometry, R::of(sample.brdf), R::of(sample.weight)))
+            .map_err(|error| FitError::Sample(index, error))?;
         blocks[index / LANES].set(index % LANES, &observation);
     }
     Ok(blocks)

@@ -1,9 +1,13 @@
 //! Models of stray light: against 60-digit arithmetic, at their limits, and found again from their own scans.
 
+use brdfit_core::brdf::ALL;
+use brdfit_core::check::worst_gradient;
 use brdfit_core::dual::Number;
 use brdfit_core::formula::{Directions, Formula, Own, worst_slope};
 use brdfit_core::geometry::{Block, LANES, Sample};
 use brdfit_core::lm::Options;
+use brdfit_core::lobes::{Ggx, Smith};
+use brdfit_core::microfacet::Microfacet;
 use brdfit_core::model::{Model, Parameter, Role};
 use brdfit_core::models::{Abg, HarveyShack, KCorrelation, KCorrelation2};
 use brdfit_core::real::Real;
@@ -356,4 +360,41 @@ fn the_derivative_check_names_the_wrong_parameter() {
     assert!((off - 0.5).abs() < 1e-12, "{off}");
     let (_, off) = worst_slope::<f64, Abg, 4>(&ABG[0], &at);
     assert_eq!(off, 0.0);
+}
+
+/// The check of J'r by differences, of a scan that no model fits, at these values of the parameters.
+fn differences<R: Real, M: Model<R, P, C>, const P: usize, const C: usize>(values: [f64; P]) -> (usize, f64) {
+    let mut blocks = [Block::EMPTY; 2];
+    for row in 0..2 * LANES {
+        let theta_s = R::of(0.08 * (row as f64 - 12.0));
+        let sample = Sample::in_plane(R::of(0.6), theta_s, R::of(0.3));
+        let observation = observe::<R, M, P, C>(&sample).expect("above the horizon");
+        blocks[row / LANES].set(row % LANES, &observation);
+    }
+    let x = Residuals::<R, M, P, C>::from_values(&values.map(R::of));
+    let (place, off) = worst_gradient(&Residuals::<R, M, P, C>::new(&blocks), &x);
+    (place, off.f64())
+}
+
+fn worst_difference<R: Real>() -> f64 {
+    let eq_14 = [0.01, 0.3, 0.2, 0.2, 1.5, 0.3];
+    [
+        differences::<R, Microfacet<ALL>, 6, 6>(eq_14),
+        differences::<R, Microfacet<ALL, Ggx, Smith>, 6, 8>(eq_14),
+        differences::<R, Own<Abg>, 4, 8>(ABG[0]),
+        differences::<R, Own<HarveyShack>, 4, 8>([0.01, 2.0, 0.05, 2.2]),
+        differences::<R, Own<KCorrelation>, 4, 8>([0.01, 2.0, 20.0, 2.2]),
+    ]
+    .map(|(_, off)| off)
+    .into_iter()
+    .fold(0.0, f64::max)
+}
+
+#[test]
+fn differences_of_the_cost_agree_with_right_derivatives_and_name_a_wrong_one() {
+    check(worst_difference::<f64>(), tolerance::DIFFERENCES_F64);
+    check(worst_difference::<f32>(), tolerance::DIFFERENCES_F32);
+    let (place, off) = differences::<f64, Own<Wrong>, 3, 8>([0.1, 2.0, 0.3]);
+    assert_eq!(Wrong::PARAMETERS[place].name, "m");
+    assert!((off - 0.5).abs() < 1e-6, "{off}");
 }

@@ -20,6 +20,7 @@
 //! | fit from one start | [`lm::Problem`], [`lm::Fit`], [`lm::Stop`] | `lm.rs` | |
 //! | models from a formula | [`formula::Formula`], [`dual::Dual`] | `formula.rs`, `dual.rs` | |
 //! | models of stray light and of paints | [`models::Abg`] and others | `models.rs` | |
+//! | are derivatives right? | [`check::worst_gradient`], [`formula::worst_slope`] | `check.rs` | |
 //! | residuals of a scan | [`residuals::Residuals`], [`residuals::Scan`] | `residuals.rs` | Eq. 15-17 |
 //! | the same without vectors | | `scalar.rs` | |
 //! | several scans together | [`joint::Joint`] | `joint.rs` | |
@@ -41,6 +42,7 @@ mod bend;
 mod boxqp;
 pub mod brdf;
 mod candidate;
+pub mod check;
 pub mod dual;
 pub mod formula;
 mod fresnel;

@@ -1,6 +1,6 @@
 //! Work shared among the threads of the pool.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use rayon::prelude::*;
 
@@ -18,6 +18,13 @@ pub fn each<S: Send + Sync>(count: usize, of: &(dyn Fn(usize) -> S + Sync)) -> V
 /// The same of each item.
 pub fn map<T: Sync, S: Send + Sync>(items: &[T], of: &(dyn Fn(&T) -> S + Sync)) -> Vec<S> {
     each(items.len(), &|k| of(&items[k]))
+}
+
+/// The same of each item of a list that nobody needs any more.
+pub fn into<T: Send, S: Send + Sync>(items: Vec<T>, of: &(dyn Fn(T) -> S + Sync)) -> Vec<S> {
+    let items: Vec<Mutex<Option<T>>> = items.into_iter().map(|item| Mutex::new(Some(item))).collect();
+    let one = |k: usize| items[k].lock().ok()?.take().map(of);
+    each(items.len(), &one).into_iter().flatten().collect()
 }
 
 /// What `of` gives of 0, 1 ... `count` - 1, at least one, added in this order.

@@ -4,9 +4,9 @@ use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
-use rayon::prelude::*;
 
 use super::misfit::lines;
+use crate::engine::threads;
 use crate::engine::uncertainty::Misfit;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View};
 
@@ -101,7 +101,7 @@ pub fn bootstrap(
         let options = redrawn(options, &outcome.params, &mut noise);
         Ok(engine::fit_from(&copy, &options, &[outcome.params])?.params)
     };
-    (0..count).into_par_iter().map(one).collect()
+    threads::each(count as usize, &|k| one(k as u32)).into_iter().collect()
 }
 
 /// The options with the priors measured again too, of a material with these values.

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use brdfit_core::brdf::DIFFUSE;
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::criteria::{Criteria, counted};
 use super::misfit::{self, Inflation};
 use super::weighed;
 use crate::engine::robust::{self, Robust};
+use crate::engine::threads;
 use crate::engine::{self, FitError, FitOptions, Model, Outcome, TERM_SETS, Until, Values};
 use crate::error::Error;
 use crate::input::Measurement;
@@ -261,8 +261,7 @@ fn fit_each(
             let outcome = weighed::fit(samples, options, engine::fit_from(samples, options, &known)?)?;
             Ok((*place, **options, outcome))
         };
-        let found: Vec<_> = stage.par_iter().map(fit).collect();
-        for fit in found {
+        for fit in threads::map(&stage, &fit) {
             match fit {
                 Ok(fit) => fitted.push(fit),
                 // The sizes ascend, so the first is that of the fewest parameters.

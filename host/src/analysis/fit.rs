@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::choose::{self, Choice, Wanted};
 use super::derived::{self, Derived};
@@ -13,6 +12,7 @@ use super::hints::{self, Hint};
 use super::proof::{Goal, Proof, of_outcome};
 use super::{curved, range, unseen};
 use crate::engine::clock::Stopwatch;
+use crate::engine::threads;
 use crate::engine::{self, FitError, FitOptions, Outcome, Values, View, robust};
 use crate::error::Error;
 use crate::input::{self, About, LeftOut, Measurement, ReadAs, left_out};
@@ -285,7 +285,7 @@ pub fn residuals(measurement: &Measurement, outcome: &Outcome) -> Vec<f64> {
         true => f64::NAN,
         false => view.residual(sample).unwrap_or(f64::NAN),
     };
-    measurement.samples.par_iter().with_min_len(SHARE).map(one).collect()
+    shared(&measurement.samples, &one)
 }
 
 /// The samples that were fitted, and all that was left out.
@@ -305,16 +305,21 @@ fn without_outliers<'a>(measurement: &'a Measurement, outcome: &Outcome) -> (Cow
     (kept.map(|(sample, _)| *sample).collect(), left_out)
 }
 
+/// What `one` makes of each item; threads share those of a long scan.
+fn shared<T: Sync, S: Send + Sync + Clone>(items: &[T], one: &(dyn Fn(&T) -> S + Sync)) -> Vec<S> {
+    let parts: Vec<&[T]> = items.chunks(SHARE).collect();
+    threads::map(&parts, &|part| part.iter().map(one).collect::<Vec<S>>()).concat()
+}
+
 fn by_angle(samples: &[Sample<f64>], view: &View) -> Vec<AngleOfIncidence> {
     let mut order: Vec<&Sample<f64>> = samples.iter().collect();
     order.sort_by(|a, b| a.theta_i.total_cmp(&b.theta_i));
     let until = until();
-    // Threads share those of a long scan.
     let square = |sample: &&Sample<f64>| {
         let residual = (!until.is_over()).then(|| view.residual(sample)).flatten()?;
         Some(residual * residual)
     };
-    let squares: Vec<Option<f64>> = order.par_iter().with_min_len(SHARE).map(square).collect();
+    let squares = shared(&order, &square);
     let mut rest = &squares[..];
     let one = |group: &[&Sample<f64>]| {
         let (own, after) = rest.split_at(group.len());

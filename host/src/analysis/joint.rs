@@ -5,13 +5,13 @@ mod errors;
 pub mod weights;
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::criteria::Criteria;
 use super::deviations::Stated;
 use super::misfit::Inflation;
 use super::weighed;
 use crate::engine::joint::{self, JointFit};
+use crate::engine::threads;
 use crate::engine::{FitError, FitOptions, Precision};
 use correlated::Linear;
 pub use errors::Known;
@@ -77,8 +77,7 @@ pub fn fit(
         }
         Ok((*options, fitted, linear))
     };
-    let fitted: Result<Vec<_>, _> = candidates.par_iter().map(one).collect();
-    let fitted = fitted?;
+    let fitted: Vec<_> = threads::map(candidates, &one).into_iter().collect::<Result<_, _>>()?;
     let inflation = inflation_of_best(&fitted);
     let judged = fitted.into_iter().map(|(options, fitted, linear)| {
         // A joint fit is in double whatever the options say.

@@ -1,9 +1,9 @@
 //! Profile likelihood: the cost over one parameter, minimised over the others, and the intervals that follow.
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::deviations::Stated;
+use crate::engine::threads;
 use crate::engine::uncertainty::{UNKNOWN, Uncertainty};
 use crate::engine::{self, FitError, FitOptions, Outcome};
 
@@ -98,10 +98,8 @@ fn restarted(
         least = better.cost;
         found.adopt(samples, options, &better)?;
         let outcome = &found.outcome;
-        let anew = found.list.into_par_iter();
-        found.list = anew
-            .map(|profile| around(profile, samples, options, outcome, copies, stated))
-            .collect::<Result<_, _>>()?;
+        let anew = |profile: &Profile| around(profile.clone(), samples, options, outcome, copies, stated);
+        found.list = threads::map(&found.list, &anew).into_iter().collect::<Result<_, _>>()?;
     }
     Ok(found)
 }
@@ -135,9 +133,8 @@ fn list(
     copies: u32,
     stated: Option<Stated>,
 ) -> Result<Vec<Profile>, FitError> {
-    let each = places.par_iter();
-    each.map(|&place| profile(samples, options, outcome, place, copies, stated))
-        .collect()
+    let one = |&place: &usize| profile(samples, options, outcome, place, copies, stated);
+    threads::map(places, &one).into_iter().collect()
 }
 
 /// The points of a profile with a better fit that was met beside it, and the intervals that refer to that.

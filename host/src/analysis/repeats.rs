@@ -6,12 +6,12 @@
 mod priors;
 
 use brdfit_core::uncertainty::Place;
-use rayon::prelude::*;
 
 use super::chance::{above_f, within_t};
 use super::derived::{Derived, Value};
 use super::fit::FittedScan;
 use super::undetermined::undetermined;
+use crate::engine::threads;
 use crate::input::Measurement;
 use priors::Displaced;
 
@@ -86,10 +86,8 @@ impl Budget {
 
 /// Over two runs or more, as they were read and fitted; `calibration` is the relative standard uncertainty of a factor that all runs have in common, and which `fits` do not count.
 pub fn quantities(measurements: &[Measurement], fits: &[FittedScan], calibration: f64) -> Vec<Quantity> {
-    let displaced = measurements.par_iter().zip(fits);
-    let displaced: Vec<Displaced> = displaced
-        .map(|(measurement, fit)| Displaced::of(measurement, fit))
-        .collect();
+    let runs: Vec<(&Measurement, &FittedScan)> = measurements.iter().zip(fits).collect();
+    let displaced: Vec<Displaced> = threads::map(&runs, &|(measurement, fit)| Displaced::of(measurement, fit));
     let open: Vec<Vec<&str>> = fits.iter().map(open).collect();
     let Some(first) = fits.first() else { return Vec::new() };
     let model = first.outcome.model;

@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rayon::prelude::*;
 
 use super::prove::{ProofArguments, ended, part, proving, so_far};
 use crate::analysis::choose::{Wanted, left_out_by_auto};
@@ -14,6 +13,7 @@ use crate::analysis::deviations;
 use crate::analysis::fit::{FittedScan, fit, prove};
 use crate::analysis::proof::provable;
 use crate::engine::certify::Certificate;
+use crate::engine::threads;
 use crate::engine::{FitOptions, Material, Method, Until, robust};
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, measurement};
@@ -75,23 +75,20 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
     let bar = progress(streams.progress, &wanted, measurements.len());
     // Of one scan nothing is finished before all is, but for its proof.
     let settled = |measurement| deviations::settled(measurement, &wanted);
-    let measurements: Vec<Measurement> = pool.install(|| measurements.into_par_iter().map(settled).collect());
+    let measurements = pool.install(|| threads::into(measurements, &settled));
     let keeps = measurements.len() > 1 || arguments.certify.is_some();
     let interrupt = keeps.then(interrupt::keeping);
     let interrupted = || interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed));
     let wanted = wanted.until(interrupt.map_or_else(until, Until::set));
-    let results: Vec<Option<Result<FittedScan, Error>>> = pool.install(|| {
-        let each = measurements.par_iter();
-        each.map(|measurement| {
-            if interrupted() {
-                return None;
-            }
-            let report = fit(measurement, &wanted);
-            bar.inc(1);
-            Some(report).filter(|report| report.is_ok() || !interrupted())
-        })
-        .collect()
-    });
+    let one = |measurement: &Measurement| {
+        if interrupted() {
+            return None;
+        }
+        let report = fit(measurement, &wanted);
+        bar.inc(1);
+        Some(report).filter(|report| report.is_ok() || !interrupted())
+    };
+    let results = pool.install(|| threads::map(&measurements, &one));
     bar.finish_and_clear();
     let each = measurements.iter().zip(results);
     let fitted = each.filter_map(|(measurement, result)| Some((measurement, result?)));
@@ -112,14 +109,17 @@ pub fn run(arguments: &Arguments, streams: &mut Streams) -> Result<Ended, Error>
         reports.iter_mut().for_each(FittedScan::forget_times);
     }
     if arguments.output.format == TableFormat::Text {
-        let by_auto = |(measurement, report): (&Measurement, &mut FittedScan)| {
-            let kept = robust::kept(&measurement.samples, &report.outcome);
-            if report.choice.is_none() && report.options.method == Method::Default {
-                report.left_out_by_auto = left_out_by_auto(&kept, &report.options);
-            }
+        let by_auto = |place: usize| {
+            let report = &reports[place];
+            let plain = report.choice.is_none() && report.options.method == Method::Default;
+            let kept = || robust::kept(&measurements[place].samples, &report.outcome);
+            plain.then(|| left_out_by_auto(&kept(), &report.options))
         };
         if reports.len() == measurements.len() {
-            pool.install(|| measurements.par_iter().zip(&mut reports).for_each(by_auto));
+            let left_out = pool.install(|| threads::each(reports.len(), &by_auto));
+            for (report, terms) in reports.iter_mut().zip(left_out) {
+                report.left_out_by_auto = terms.unwrap_or_default();
+            }
         }
     }
     let ended = ended(&reports, measurements.len());

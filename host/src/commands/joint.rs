@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use brdfit_core::geometry::Sample;
 use clap::{Args, ValueEnum};
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use crate::analysis::choose::Wanted;
@@ -17,6 +16,7 @@ use crate::analysis::joint::{self, Candidate, Fits};
 use crate::analysis::repeats::quantities;
 use crate::document;
 use crate::engine::joint::SCANS;
+use crate::engine::threads;
 use crate::engine::{FitOptions, Model, robust};
 use crate::error::{Error, shown};
 use crate::input::{self, Measurement, ReadOptions, left_out, measurement};
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
 /// Each scan with weights from its own fit, where its file gives standard deviations.
 fn settled(measurements: Vec<Measurement>, wanted: &Wanted, pool: &ThreadPool) -> Vec<Measurement> {
     let one = |measurement| deviations::settled(measurement, wanted);
-    pool.install(|| measurements.into_par_iter().map(one).collect())
+    pool.install(|| threads::into(measurements, &one))
 }
 
 /// Each scan without the outliers that the robust fit of it alone leaves out.
@@ -135,7 +135,8 @@ fn without_outliers(
             ..measurement
         })
     };
-    pool.install(|| measurements.into_par_iter().map(one).collect())
+    let alone = pool.install(|| threads::into(measurements, &one));
+    alone.into_iter().collect()
 }
 
 /// The budget over runs of one sample.
@@ -175,8 +176,7 @@ fn run_repeats(arguments: &Arguments, given: &[OsString], streams: &mut Streams)
     let alone = Wanted::One(alone);
     let pool = arguments.search.pool()?;
     let measurements = settled(measurements, &alone, &pool);
-    let fit_all = || measurements.par_iter().map(|one| fit(one, &alone)).collect();
-    let fits: Vec<Result<FittedScan, Error>> = pool.install(fit_all);
+    let fits = pool.install(|| threads::map(&measurements, &|one| fit(one, &alone)));
     let fits: Vec<FittedScan> = fits.into_iter().collect::<Result<_, _>>()?;
     let calibration = options.instrument.scale_uncertainty;
     let found = repeats::Found {

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rayon::prelude::*;
 
 use super::prove::{ProofArguments, part};
 use super::subject::{self, Subject};
 use crate::analysis::proof::provable;
+use crate::engine::threads;
 use crate::error::Error;
 use crate::input::{ReadOptions, measurement};
 use crate::options::SearchArguments;
@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments, given: &[OsString], streams: &mut Streams) -> 
     let sections: Vec<Result<Section, Error>> = arguments.search.pool()?.install(|| match goal {
         // One proof after the other, each on all threads: so a limit of time is one of each.
         Some(_) => subjects.iter().map(section).collect(),
-        None => subjects.par_iter().map(section).collect(),
+        None => threads::map(&subjects, &section),
     });
     let sections: Vec<Section> = sections.into_iter().collect::<Result<_, _>>()?;
     if let Some(folder) = &arguments.plot {

@@ -7,13 +7,13 @@ use std::f64::consts::LN_2;
 
 use brdfit_core::geometry::Sample;
 use brdfit_core::real::Real;
-use rayon::prelude::*;
 
 use super::shape::{HORIZON, Value, crossing, tops};
 use crate::analysis::misfit::lines;
 use crate::analysis::misfit::process::Process;
 use crate::analysis::misfit::smoothed::smoothed;
 use crate::engine::instrument::signed;
+use crate::engine::threads;
 use crate::engine::uncertainty::{Misfit, Uncertainty};
 use crate::engine::{Material, View};
 
@@ -60,7 +60,7 @@ fn of_misfit(samples: &[Sample<f64>], view: &View, scale: f64, misfit: Misfit) -
             misfit: (2.0 * misfit.smooth - 1.0).max(0.0),
         })
     };
-    lines::of(samples).par_iter().filter_map(one).collect()
+    threads::map(&lines::of(samples), &one).into_iter().flatten().collect()
 }
 
 impl Line {

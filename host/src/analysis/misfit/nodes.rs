@@ -1,12 +1,12 @@
 //! Which processes the residuals may be of, by their likelihood.
 
 use brdfit_core::real::Real;
-use rayon::prelude::*;
 
 use super::lanes::TOGETHER;
 use super::likelihood::likelihoods;
 use super::process::{Process, Residuals};
 use super::sandwich::Common;
+use crate::engine::threads;
 use crate::until::until;
 
 /// One process that the residuals may be of.
@@ -71,7 +71,10 @@ fn judged(all: &Residuals, lengths: &[f64], degrees_of_freedom: usize, evidence:
     let judged_all = |processes: &[Process]| -> Vec<Judged> {
         match all.values.len() < MANY {
             true => some(processes),
-            false => processes.par_chunks(TOGETHER).flat_map_iter(some).collect(),
+            false => {
+                let parts: Vec<&[Process]> = processes.chunks(TOGETHER).collect();
+                threads::map(&parts, &|part| some(part)).concat()
+            }
         }
     };
     let mut first = processes(2, &FIRST);

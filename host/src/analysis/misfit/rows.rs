@@ -1,10 +1,10 @@
 //! The residuals of a fit and their derivatives, as processes along lines take them.
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::lines;
 use super::process::Residuals;
+use crate::engine::threads;
 use crate::engine::{Values, View};
 use crate::until::until;
 
@@ -64,37 +64,43 @@ impl<'a> Rows<'a> {
 
     /// The residuals in units of their standard deviation and the rows of J along the axes, line by line; `None` if one is not finite, or if nobody waits for them any more.
     pub fn residuals(&self, axes: &[&Values], scale: f64) -> Option<Residuals> {
-        let mut all = Residuals {
-            columns: axes.len(),
-            ..self.lines.clone()
-        };
-        let count = self.places.len();
-        all.values.resize(count, 0.0);
-        all.rows.resize(count * axes.len(), 0.0);
-        let one = |place: usize, value: &mut f64, row: &mut [f64]| {
+        let push = |place: usize, values: &mut Vec<f64>, rows: &mut Vec<f64>| {
             let sample = self.places[place];
             let (residual, gradient) = match self.known.get(place) {
                 Some(known) => (*known)?,
                 None => self.computed(sample)?,
             };
-            *value = residual / scale;
-            for (x, axis) in row.iter_mut().zip(axes) {
+            let value = residual / scale;
+            let on = |axis: &&Values| {
                 let sum: f64 = axis.iter().zip(gradient.iter()).map(|(a, b)| a * b).sum();
-                *x = sum * self.samples[sample].weight / scale;
-            }
-            (value.is_finite() && row.iter().all(|x| x.is_finite())).then_some(())
+                sum * self.samples[sample].weight / scale
+            };
+            values.push(value);
+            let begun = rows.len();
+            rows.extend(axes.iter().map(on));
+            (value.is_finite() && rows[begun..].iter().all(|x| x.is_finite())).then_some(())
         };
-        let values = all.values.par_chunks_mut(SHARE);
-        let shares = values.zip(all.rows.par_chunks_mut(SHARE * axes.len()));
-        let until = until();
-        let whole = shares.enumerate().map(|(share, (values, rows))| {
-            if until.is_over() {
-                return None;
+        let (count, until) = (self.places.len(), until());
+        let share = |share: usize| {
+            let places = share * SHARE..count.min((share + 1) * SHARE);
+            let mut values = Vec::with_capacity(places.len());
+            let mut rows = Vec::with_capacity(places.len() * axes.len());
+            for place in places {
+                push(place, &mut values, &mut rows)?;
             }
-            let mut points = values.iter_mut().zip(rows.chunks_mut(axes.len())).enumerate();
-            points.try_for_each(|(place, (value, row))| one(share * SHARE + place, value, row))
-        });
-        whole.collect::<Option<()>>()?;
+            (!until.is_over()).then_some((values, rows))
+        };
+        let mut all = Residuals {
+            columns: axes.len(),
+            values: Vec::with_capacity(count),
+            rows: Vec::with_capacity(count * axes.len()),
+            ..self.lines.clone()
+        };
+        for part in threads::each(count.div_ceil(SHARE), &share) {
+            let (values, rows) = part?;
+            all.values.extend(values);
+            all.rows.extend(rows);
+        }
         Some(all)
     }
 }

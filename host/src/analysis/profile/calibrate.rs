@@ -1,11 +1,11 @@
 //! How far the cost may rise before a value is refuted: by the F test, or as copies of the scan show it.
 
 use brdfit_core::geometry::Sample;
-use rayon::prelude::*;
 
 use super::hold::hold;
 use crate::analysis::bootstrap::{Noise, copy, quantile, redrawn};
 use crate::analysis::chance::within_t;
+use crate::engine::threads;
 use crate::engine::{self, FitError, FitOptions, Values};
 
 /// Confidence of the intervals: one standard error of a normal distribution, and 95 %.
@@ -44,6 +44,7 @@ pub fn thresholds(
         let best = best.map_or(outcome.cost, |(cost, _)| cost.min(held.cost));
         Ok((held.cost - best) / best * outcome.uncertainty.degrees_of_freedom as f64)
     };
-    let rises: Vec<f64> = (0..count).into_par_iter().map(one).collect::<Result<_, _>>()?;
+    let rises = threads::each(count as usize, &|k| one(k as u32));
+    let rises: Vec<f64> = rises.into_iter().collect::<Result<_, _>>()?;
     Ok(LEVELS.map(|level| quantile(&rises, level)))
 }

@@ -4,13 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rayon::prelude::*;
-
 use crate::analysis::choose::Wanted;
 use crate::analysis::deviations;
 use crate::analysis::fit::{AngleOfIncidence, FittedScan, Told, fit_telling, prove};
 use crate::analysis::proof::Goal;
 use crate::engine::Model;
+use crate::engine::threads;
 use crate::error::Error;
 use crate::input::{self, Measurement, ReadOptions, bytes};
 use crate::records::journal::Journal;
@@ -42,8 +41,10 @@ pub struct Job<'a> {
 /// # Errors
 /// A result cannot be kept; what is wrong with a scan is kept as its result.
 pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn() + Sync)) -> Result<usize, Error> {
+    // After a result that cannot be kept there is nothing to go on for.
+    let failed = AtomicBool::new(false);
     let one = |&index: &usize| {
-        if job.interrupt.load(Ordering::Relaxed) {
+        if job.interrupt.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed) {
             return Ok(0);
         }
         let bytes = bytes::of_file(&job.files[index]);
@@ -53,12 +54,13 @@ pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn
             let Some(scans) = scans(job, &job.files[index], bytes) else {
                 return Ok(0);
             };
-            lock(journal).keep(&Record { index, contents, scans })?;
+            let kept = lock(journal).keep(&Record { index, contents, scans });
+            kept.inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
         }
         done();
         Ok(1)
     };
-    places.par_iter().map(one).try_reduce(|| 0, |a, b| Ok(a + b))
+    threads::map(places, &one).into_iter().sum()
 }
 
 fn lock(journal: &Mutex<Journal>) -> std::sync::MutexGuard<'_, Journal> {
@@ -93,7 +95,7 @@ fn scans(job: &Job, path: &Path, bytes: Result<Vec<u8>, Error>) -> Option<Vec<Sc
     };
     match bytes.and_then(|bytes| input::parse(&name, &bytes, job.read)) {
         // Spectral files hold many scans, so these are shared among the threads too.
-        Ok(measurements) => measurements.into_par_iter().map(one).collect(),
+        Ok(measurements) => threads::into(measurements, &one).into_iter().collect(),
         Err(error) => Some(vec![failed(job, &name, None, &error)]),
     }
 }

@@ -92,6 +92,10 @@ pub fn bootstrap(
     count: u32,
 ) -> Result<Vec<Values>, FitError> {
     let one = |k: u32| {
+        // Thousands of copies that nobody waits for take seconds too.
+        if options.until.is_over() {
+            return Err(FitError::Interrupted);
+        }
         let mut noise = Noise::new(options.seed, u64::from(k));
         let (view, scale) = (outcome.view(), outcome.uncertainty.scale);
         let copy = match &outcome.uncertainty.misfit {

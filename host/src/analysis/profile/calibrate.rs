@@ -34,6 +34,10 @@ pub fn thresholds(
 ) -> Result<[f64; 2], FitError> {
     let view = options.view(*params);
     let one = |k: u32| {
+        // Thousands of copies that nobody waits for take seconds too.
+        if options.until.is_over() {
+            return Err(FitError::Interrupted);
+        }
         let mut noise = Noise::new(options.seed, u64::from(k));
         let copy = copy(samples, view, scale, &mut noise);
         let options = &redrawn(options, params, &mut noise);

@@ -128,8 +128,8 @@ impl<'a> Free<'a> {
     pub fn linearized(&self) -> (Vec<f64>, Vec<[f64; 6]>) {
         let (residuals, mut gradients) = self.course.linearized(&self.x());
         for gradient in &mut gradients {
-            for k in 0..6 {
-                gradient[k] *= (self.course.upper[k] - self.course.lower[k]) * (2.0 * self.u[k]).sin();
+            for (k, slope) in gradient.iter_mut().enumerate() {
+                *slope *= (self.course.upper[k] - self.course.lower[k]) * (2.0 * self.u[k]).sin();
             }
         }
         (residuals, gradients)

@@ -1,4 +1,8 @@
 //! Other people's solvers beside brdfit's, on NIST's certified problems and in a race to the optimum; `benches/peers/run` prepares what is not Rust.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "those who race against brdfit may use std's functions; its fits may not"
+)]
 
 #[cfg(ceres)]
 mod ceres;

@@ -13,9 +13,6 @@ use rmpfit::{MPFitter, MPPar, MPResult, MPSide};
 
 use crate::course::Course;
 
-/// Fits from a start; the course notes what it meets.
-pub type Local = fn(&Course, &[f64; 6]);
-
 /// A problem of `basin`: the course with its bounds.
 pub struct Bounded<'a> {
     pub course: &'a Course,

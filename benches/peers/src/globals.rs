@@ -54,7 +54,7 @@ fn mlsl(course: &Course, local: Algorithm, seed: u64) {
     let cap = course.left().ceil() as u32;
     global.set_maxeval(2 * cap + 10).expect("a limit");
     // Its sequence has no seed: the first point is another one.
-    let mut first = crate::race::log_uniform(course, seed, 0).map(f64::ln);
+    let mut first = crate::racers::log_uniform(course, seed, 0).map(f64::ln);
     let _ = global.optimize(&mut first);
 }
 
@@ -108,7 +108,7 @@ pub fn cma_es(course: &Course, seed: u64) {
     let mut k = 0;
     while !course.is_over() {
         let problem = Logarithms::of(course);
-        let mean: Vec<f64> = crate::race::log_uniform(course, seed, k)
+        let mean: Vec<f64> = crate::racers::log_uniform(course, seed, k)
             .iter()
             .map(|x| x.ln())
             .collect();

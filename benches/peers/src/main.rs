@@ -10,9 +10,11 @@ mod course;
 mod fits;
 mod globals;
 mod nist;
+mod octave;
 mod outside;
 mod profile;
 mod race;
+mod racers;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

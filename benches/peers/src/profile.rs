@@ -10,8 +10,8 @@ const HEIGHT: f64 = 280.0;
 const LINE: f64 = 17.0;
 /// The least number of passes that is drawn.
 const FEWEST: f64 = 3.0;
-const COLOURS: [&str; 7] = [
-    "#d62728", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f",
+const COLOURS: [&str; 8] = [
+    "#d62728", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#17becf",
 ];
 
 /// Racers beyond the colours are dashed.

@@ -9,7 +9,7 @@ use crate::fresnel::{Fresnel, Index};
 use crate::geometry::{Block, Geometry};
 use crate::lobes::{Beckmann, Distribution, Masking, VGroove};
 use crate::model::{Rows, WEIGHTS, Want};
-use crate::pack::Pack;
+use crate::pack::{Pack, each};
 use crate::real::Real;
 
 pub use terms::{
@@ -367,9 +367,14 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             }
         };
         set(0, factor * share * (R::ONE / R::PI));
-        for place in 0..K / G {
-            let of_lobe = Pack::<R, G>::from_fn(|k| d_rho.0[place * G + k]);
-            set(WEIGHT[lobe(TERMS, place)], of_lobe * share);
+        if const { K > 0 } {
+            set(WEIGHT[lobe(TERMS, 0)], of_place(&d_rho, 0) * share);
+        }
+        if const { K > G } {
+            set(WEIGHT[lobe(TERMS, 1)], of_place(&d_rho, 1) * share);
+        }
+        if const { K > 2 * G } {
+            set(WEIGHT[lobe(TERMS, 2)], of_place(&d_rho, 2) * share);
         }
         if TERMS & MIRRORS != 0 {
             set(RHO_M, Pack::from_fn(|k| unit_lobes.f.0[k]) * share);
@@ -380,11 +385,14 @@ impl<R: Real, const TERMS: u8, D: Distribution, M> Brdf<R, TERMS, D, M> {
             steepness = steepness + unit_lobes.masking_slope * R::of(0.5);
         }
         let by_slope = term * steepness;
-        for owner in 0..LOBES {
+        let mut steep = |owner: usize| {
             let index = SLOPE[owner];
             let sum = sum_some(by_slope, |place| slope(TERMS, lobe(TERMS, place)) == index);
             set(index, sum * share * (two * self.inverse_m[owner]));
-        }
+        };
+        steep(0);
+        steep(1);
+        steep(2);
         set(
             4,
             sum_lobes(Pack::splat(R::ZERO), weighted * fresnel.d_n2) * share * (two * self.index.n),
@@ -436,12 +444,16 @@ struct UnitLobes<R, const K: usize> {
     masking_slope: Pack<R, K>,
 }
 
+/// Those of `x` that belong to the lobe in place `place`.
+#[inline(always)]
+fn of_place<R: Real, const K: usize, const G: usize>(x: &Pack<R, K>, place: usize) -> Pack<R, G> {
+    Pack::from_fn(|k| x.0[place * G + k])
+}
+
 /// Adds what belongs to each lane, lobe by lobe.
 #[inline(always)]
 fn sum_lobes<R: Real, const K: usize, const G: usize>(mut sum: Pack<R, G>, x: Pack<R, K>) -> Pack<R, G> {
-    for k in 0..K {
-        sum.0[k % G] += x.0[k];
-    }
+    each!(K, |k| sum.0[k % G] += x.0[k]);
     sum
 }
 
@@ -449,11 +461,9 @@ fn sum_lobes<R: Real, const K: usize, const G: usize>(mut sum: Pack<R, G>, x: Pa
 #[inline(always)]
 fn sum_some<R: Real, const K: usize, const G: usize>(x: Pack<R, K>, counts: impl Fn(usize) -> bool) -> Pack<R, G> {
     let mut sum = Pack::splat(R::ZERO);
-    for k in 0..K {
-        if counts(k / G) {
-            sum.0[k % G] += x.0[k];
-        }
-    }
+    each!(K, |k| if counts(k / G) {
+        sum.0[k % G] += x.0[k];
+    });
     sum
 }
 

@@ -20,6 +20,8 @@ macro_rules! each {
     };
 }
 
+pub(crate) use each;
+
 /// `K` numbers; each operation is made for all of them before the next.
 ///
 /// A processor looks only some hundred instructions ahead: the links of one long chain leave it idle, those of `K` chains in turn do not.

@@ -82,13 +82,16 @@ impl<'a> Rows<'a> {
         };
         let (count, until) = (self.places.len(), until());
         let share = |share: usize| {
+            if until.is_over() {
+                return None;
+            }
             let places = share * SHARE..count.min((share + 1) * SHARE);
             let mut values = Vec::with_capacity(places.len());
             let mut rows = Vec::with_capacity(places.len() * axes.len());
             for place in places {
                 push(place, &mut values, &mut rows)?;
             }
-            (!until.is_over()).then_some((values, rows))
+            Some((values, rows))
         };
         let mut all = Residuals {
             columns: axes.len(),

@@ -10,7 +10,7 @@
 //! | scalar type, elementary functions | [`real::Real`] | `real.rs` | |
 //! | numbers side by side | [`pack::Pack`] | `pack.rs` | |
 //! | sample -> geometry, observation -> block | [`geometry::Sample`], [`geometry::Observation`], [`geometry::Block`] | `geometry.rs` | Eq. 7, 9, 12, 13 |
-//! | F and its derivatives | `Index` | `fresnel.rs` | |
+//! | F and its derivatives | [`brdf::Reflecting`] | `fresnel.rs` | |
 //! | what a model is | [`model::Model`], [`model::Parameter`] | `model.rs` | |
 //! | pieces of microfacet models | [`lobes::Distribution`], [`lobes::Masking`] | `lobes.rs` | Eq. 5, 8, 9 |
 //! | ln f and its gradient | [`brdf::Params`], [`brdf::Brdf`] | `brdf.rs` | Eq. 3-8, 11, 14 |

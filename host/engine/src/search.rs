@@ -97,16 +97,13 @@ pub(crate) fn run<R: Real, const P: usize>(
         Method::Default => search::search_from(single(scene), &bounds, options.seed, starts, &known, &lm),
         Method::Paper => {
             let own = starts as usize;
-            let fits = threads::each(own + known.len(), &|i| match i.checked_sub(own) {
+            let fits = threads::try_each(own + known.len(), &|i| match i.checked_sub(own) {
                 // A million starts that end at once take seconds too.
-                _ if options.until.is_over() => None,
-                None => Some(search::paper_fit(single(scene), &bounds, options.seed, i as u64, &lm)),
-                Some(k) => Some(lm::fit(single(scene), &bounds, known[k], &lm)),
-            });
-            if options.until.is_over() {
-                return Err(FitError::Interrupted);
-            }
-            search::paper(single(scene), &bounds, fits.into_iter().flatten(), &lm)
+                _ if options.until.is_over() => Err(FitError::Interrupted),
+                None => Ok(search::paper_fit(single(scene), &bounds, options.seed, i as u64, &lm)),
+                Some(k) => Ok(lm::fit(single(scene), &bounds, known[k], &lm)),
+            })?;
+            search::paper(single(scene), &bounds, fits.into_iter(), &lm)
         }
     };
     if options.until.is_over() {

@@ -92,10 +92,6 @@ pub fn bootstrap(
     count: u32,
 ) -> Result<Vec<Values>, FitError> {
     let one = |k: u32| {
-        // Thousands of copies that nobody waits for take seconds too.
-        if options.until.is_over() {
-            return Err(FitError::Interrupted);
-        }
         let mut noise = Noise::new(options.seed, u64::from(k));
         let (view, scale) = (outcome.view(), outcome.uncertainty.scale);
         let copy = match &outcome.uncertainty.misfit {
@@ -105,7 +101,7 @@ pub fn bootstrap(
         let options = redrawn(options, &outcome.params, &mut noise);
         Ok(engine::fit_from(&copy, &options, &[outcome.params])?.params)
     };
-    threads::each(count as usize, &|k| one(k as u32)).into_iter().collect()
+    threads::try_each(count as usize, &|k| one(k as u32))
 }
 
 /// The options with the priors measured again too, of a material with these values.

@@ -77,7 +77,7 @@ pub fn fit(
         }
         Ok((*options, fitted, linear))
     };
-    let fitted: Vec<_> = threads::map(candidates, &one).into_iter().collect::<Result<_, _>>()?;
+    let fitted = threads::try_map(candidates, &one)?;
     let inflation = inflation_of_best(&fitted);
     let judged = fitted.into_iter().map(|(options, fitted, linear)| {
         // A joint fit is in double whatever the options say.

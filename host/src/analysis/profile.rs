@@ -99,7 +99,7 @@ fn restarted(
         found.adopt(samples, options, &better)?;
         let outcome = &found.outcome;
         let anew = |profile: &Profile| around(profile.clone(), samples, options, outcome, copies, stated);
-        found.list = threads::map(&found.list, &anew).into_iter().collect::<Result<_, _>>()?;
+        found.list = threads::try_map(&found.list, &anew)?;
     }
     Ok(found)
 }
@@ -134,7 +134,7 @@ fn list(
     stated: Option<Stated>,
 ) -> Result<Vec<Profile>, FitError> {
     let one = |&place: &usize| profile(samples, options, outcome, place, copies, stated);
-    threads::map(places, &one).into_iter().collect()
+    threads::try_map(places, &one)
 }
 
 /// The points of a profile with a better fit that was met beside it, and the intervals that refer to that.

@@ -34,10 +34,6 @@ pub fn thresholds(
 ) -> Result<[f64; 2], FitError> {
     let view = options.view(*params);
     let one = |k: u32| {
-        // Thousands of copies that nobody waits for take seconds too.
-        if options.until.is_over() {
-            return Err(FitError::Interrupted);
-        }
         let mut noise = Noise::new(options.seed, u64::from(k));
         let copy = copy(samples, view, scale, &mut noise);
         let options = &redrawn(options, params, &mut noise);
@@ -48,7 +44,6 @@ pub fn thresholds(
         let best = best.map_or(outcome.cost, |(cost, _)| cost.min(held.cost));
         Ok((held.cost - best) / best * outcome.uncertainty.degrees_of_freedom as f64)
     };
-    let rises = threads::each(count as usize, &|k| one(k as u32));
-    let rises: Vec<f64> = rises.into_iter().collect::<Result<_, _>>()?;
+    let rises = threads::try_each(count as usize, &|k| one(k as u32))?;
     Ok(LEVELS.map(|level| quantile(&rises, level)))
 }

@@ -41,10 +41,8 @@ pub struct Job<'a> {
 /// # Errors
 /// A result cannot be kept; what is wrong with a scan is kept as its result.
 pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn() + Sync)) -> Result<usize, Error> {
-    // After a result that cannot be kept there is nothing to go on for.
-    let failed = AtomicBool::new(false);
     let one = |&index: &usize| {
-        if job.interrupt.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed) {
+        if job.interrupt.load(Ordering::Relaxed) {
             return Ok(0);
         }
         let bytes = bytes::of_file(&job.files[index]);
@@ -54,13 +52,13 @@ pub fn run(job: &Job, places: &[usize], journal: &Mutex<Journal>, done: &(dyn Fn
             let Some(scans) = scans(job, &job.files[index], bytes) else {
                 return Ok(0);
             };
-            let kept = lock(journal).keep(&Record { index, contents, scans });
-            kept.inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
+            lock(journal).keep(&Record { index, contents, scans })?;
         }
         done();
         Ok(1)
     };
-    threads::map(places, &one).into_iter().sum()
+    // After a result that cannot be kept there is nothing to go on for.
+    Ok(threads::try_map(places, &one)?.into_iter().sum())
 }
 
 fn lock(journal: &Mutex<Journal>) -> std::sync::MutexGuard<'_, Journal> {

@@ -134,9 +134,16 @@ fn corners_of_the_reflectance() {
         tolerance::REFLECTANCE_ORACLE,
     );
     let mut worst = 0.0f64;
-    for theta_i in [0.0f64, 85.0, 89.5] {
+    let all: &[f64] = &[1e-5, 1e-3, 0.02, 0.3, 2.0, 10.0];
+    // Between, where wide facets see all kinks.
+    let wide = [(19.0, 1.15), (28.65, 0.49), (54.3, 0.62)];
+    let corners = [0.0f64, 85.0, 89.5].map(|theta_i| (theta_i, all));
+    for (theta_i, slopes) in corners
+        .into_iter()
+        .chain(wide.iter().map(|(theta_i, m)| (*theta_i, std::slice::from_ref(m))))
+    {
         let theta_i = theta_i.to_radians();
-        for m in [1e-5, 1e-3, 0.02, 0.3, 2.0, 10.0] {
+        for &m in slopes {
             for (n, kappa) in [(1.5, 0.0), (1.01, 3.0)] {
                 for volume in [false, true] {
                     let slow = of_lobe(volume, m, n, kappa, theta_i, 2);

@@ -112,15 +112,14 @@ impl<R: Real> Index<R> {
 
 /// F, dF/dn and dF/dkappa of unpolarised light; `0 < cos_theta <= 1`, `n >= 1`, `kappa >= 0`, result 0 to 1.
 pub fn fresnel<R: Real>(cos_theta: R, n: R, kappa: R) -> (R, R, R) {
-    let [f, d_n, d_kappa] = Reflecting::new(n, kappa).at(Pack([cos_theta]));
-    (f.0[0], d_n.0[0], d_kappa.0[0])
+    let [f, d_n, d_kappa2] = Reflecting::new(n, kappa).at(Pack([cos_theta]));
+    (f.0[0], d_n.0[0], d_kappa2.0[0] * (R::of(2.0) * kappa))
 }
 
 /// A surface of one index of refraction, for [`fresnel`] in many directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflecting<R> {
     index: Index<R>,
-    kappa: R,
 }
 
 impl<R: Real> Reflecting<R> {
@@ -129,19 +128,13 @@ impl<R: Real> Reflecting<R> {
     pub fn new(n: R, kappa: R) -> Self {
         Reflecting {
             index: Index::new(n, kappa * kappa),
-            kappa,
         }
     }
 
-    /// F, dF/dn and dF/dkappa at these cosines of theta_d, side by side; compiled into its caller, for the vector instructions that it may use.
+    /// F, dF/dn and dF/d(kappa^2) at these cosines of theta_d, side by side; compiled into its caller, for the vector instructions that it may use.
     #[inline(always)]
     pub fn at<const K: usize>(&self, cos_theta: Pack<R, K>) -> [Pack<R, K>; 3] {
         let fresnel = self.index.reflect(cos_theta, true);
-        let two = R::of(2.0);
-        [
-            fresnel.f,
-            fresnel.d_n2 * (two * self.index.n),
-            fresnel.d_kappa2 * (two * self.kappa),
-        ]
+        [fresnel.f, fresnel.d_n2 * (R::of(2.0) * self.index.n), fresnel.d_kappa2]
     }
 }

@@ -342,5 +342,5 @@ pub const SCALED_OUTPUT: Tolerance = Tolerance(3e-8);
 
 /// The oracle with two and with three parts a halving, relative; measured 1.6e-7.
 pub const REFLECTANCE_ORACLE: Tolerance = Tolerance(3e-7);
-/// The reflectance of one lobe against it, m from 1e-5 to 10, at 0 to 89.5 degrees.
+/// The reflectance of one lobe against it, m from 1e-5 to 10, at 0 to 89.5 degrees; measured 2.1e-7.
 pub const REFLECTANCE_CORNERS: Tolerance = Tolerance(4e-7);

@@ -44,15 +44,15 @@ const KRONRODS: [f64; PLACES] = {
     }
     weights
 };
-/// The places of Gauss's rule with their weights.
-const GAUSSES: [(usize, f64); 7] = {
-    let mut places = [(0, 0.0); 7];
+/// The same less its weight in Gauss's rule.
+const DIFFERENCES: [f64; PLACES] = {
+    let mut weights = KRONRODS;
     let mut k = 0;
     while k < 7 {
-        places[k] = (k / 2 * 4 + 2 + k % 2, GAUSS[k / 2]);
+        weights[k / 2 * 4 + 2 + k % 2] -= GAUSS[k / 2];
         k += 1;
     }
-    places
+    weights
 };
 
 /// Some ascending ends of parts.
@@ -157,22 +157,13 @@ fn rule<const N: usize>(
     }
     let values = f(&places);
     let mut kronrod = [0.0; N];
-    for place in 0..PLACES - 1 {
-        let of_kronrod = half * KRONRODS[place];
-        for k in 0..N {
-            kronrod[k] += of_kronrod * values[k][place];
-        }
+    for (sum, values) in kronrod.iter_mut().zip(&values) {
+        *sum = half * weighted(values, &KRONRODS);
     }
     // Gauss's rule tells errors alone.
-    let mut gauss = [0.0; N];
-    for (sum, values) in gauss.iter_mut().zip(&values).take(judged) {
-        for (place, weight) in GAUSSES {
-            *sum += half * weight * values[place];
-        }
-    }
     let error = |k: usize| {
         let size = kronrod[k].abs();
-        let part = (200.0 * (kronrod[k] - gauss[k]).abs() / size).min(1.0);
+        let part = (200.0 * (half * weighted(&values[k], &DIFFERENCES)).abs() / size).min(1.0);
         if size > 0.0 {
             size * part * libm::sqrt(part)
         } else {
@@ -181,6 +172,22 @@ fn rule<const N: usize>(
     };
     let worst = (0..judged).map(error).fold(0.0, f64::max);
     (kronrod, worst)
+}
+
+/// The sum of all products, by halves that lie side by side.
+fn weighted(values: &[f64; PLACES], weights: &[f64; PLACES]) -> f64 {
+    let mut sums = [0.0; PLACES];
+    for k in 0..PLACES {
+        sums[k] = weights[k] * values[k];
+    }
+    let mut count = PLACES / 2;
+    while count > 0 {
+        for k in 0..count {
+            sums[k] += sums[k + count];
+        }
+        count /= 2;
+    }
+    sums[0]
 }
 
 fn add<const N: usize>(sums: &mut [f64; N], factor: f64, values: &[f64; N]) {

@@ -14,12 +14,14 @@ use crate::engine::uncertainty::NEAR_ZERO;
 
 /// Slopes farther out, in units of m, hold 1e-13 of the facets.
 const EXTENT: f64 = 5.5;
+/// Where the Gaussian is cut, in units of m: one rule each tells its middle and its flanks.
+const WIDE: f64 = 2.3;
 /// Relative error of the integrals over one slope; they must be smoother than what is asked of their integral.
 const INNER: f64 = 1e-7;
 /// Relative error of the whole.
 const OUTER: f64 = 1e-6;
 
-/// Surface and volume lobe of rho = 1, then their derivatives by m, n and kappa.
+/// Surface and volume lobe of rho = 1, then their derivatives by m, n and kappa^2.
 const ALL: usize = 8;
 /// The lobes alone; the halvings are by these, so that they have the same bits without the others.
 const LOBES: usize = 2;
@@ -30,8 +32,6 @@ struct Facets {
     cos_i: f64,
     m: f64,
     surface: Reflecting<f64>,
-    /// The same where the derivative by kappa is not 0, if kappa is.
-    off_zero: Option<Reflecting<f64>>,
     simd: Simd,
 }
 
@@ -40,10 +40,10 @@ struct Facets {
 /// With d omega_s = 4 cos theta_d d omega_h and d omega_h = cos^3 theta_h d^2 slope, the surface lobe (Eq. 8, 14) leaves `rho_s F G cos theta_d / (cos theta_i cos theta_h)` to be averaged over the Gaussian of the slopes, and the volume lobe `4 rho_v F cos theta_s cos theta_d / cos theta_h`.
 /// Only facets that send light above the horizon count.
 pub fn of_eq_14([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) -> (f64, Values) {
-    let off_zero = (kappa == 0.0).then(|| Reflecting::new(n, NEAR_ZERO));
-    let sums: [f64; ALL] = Facets::new([m, n, kappa], theta_i, off_zero).lobes();
+    let sums: [f64; ALL] = Facets::new([m, n, kappa], theta_i).lobes();
     let both = |k: usize| rho_s * sums[2 * k] + rho_v * sums[2 * k + 1];
-    let gradient = [1.0, sums[0], sums[1], both(1), both(2), both(3)];
+    let off_zero = if kappa == 0.0 { NEAR_ZERO } else { kappa };
+    let gradient = [1.0, sums[0], sums[1], both(1), both(2), 2.0 * off_zero * both(3)];
     (rho_d + both(0), Values::from(gradient))
 }
 
@@ -57,7 +57,7 @@ pub fn of_weights([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) ->
     let asked = [m, n, kappa, theta_i];
     let (last, mut lobes) = LAST.get();
     if last != asked {
-        lobes = Facets::new([m, n, kappa], theta_i, None).lobes();
+        lobes = Facets::new([m, n, kappa], theta_i).lobes();
         LAST.set((asked, lobes));
     }
     let [surface, volume] = lobes;
@@ -65,7 +65,7 @@ pub fn of_weights([rho_d, rho_s, rho_v, m, n, kappa]: [f64; 6], theta_i: f64) ->
 }
 
 impl Facets {
-    fn new([m, n, kappa]: [f64; 3], theta_i: f64, off_zero: Option<Reflecting<f64>>) -> Self {
+    fn new([m, n, kappa]: [f64; 3], theta_i: f64) -> Self {
         let (sin_i, cos_i) = Real::portable_sin_cos(theta_i);
         Facets {
             sin_i,
@@ -73,7 +73,6 @@ impl Facets {
             // Without lobes any m does.
             m: if m > 0.0 { m } else { 1.0 },
             surface: Reflecting::new(n, kappa),
-            off_zero,
             simd: Simd::best(),
         }
     }
@@ -81,16 +80,9 @@ impl Facets {
     /// The integrals of the first `N` of [`ALL`].
     fn lobes<const N: usize>(&self) -> [f64; N] {
         let widest = (EXTENT * self.m).min(1.0 / self.cos_i);
-        // Across the plane of incidence: where kinks along it meet, and what the Gaussian is wide.
-        let tan_i = self.sin_i / self.cos_i;
-        let kinks = [
-            1.0,
-            0.5 * tan_i,
-            1.0 / Real::sqrt(3.0),
-            1.0 / tan_i,
-            self.m,
-            2.5 * self.m,
-        ];
+        let inner = [WIDE * self.m]
+            .into_iter()
+            .chain(self.ends_of_kinks().into_iter().flatten());
         let mut largest = 0.0f64;
         let mut across = |places: &[f64; PLACES]| {
             let mut sums = [[0.0; PLACES]; N];
@@ -103,7 +95,7 @@ impl Facets {
             }
             sums
         };
-        integrate(&mut across, &Ends::new(0.0, widest, kinks), LOBES, OUTER, 0.0)
+        integrate(&mut across, &Ends::new(0.0, widest, inner), LOBES, OUTER, 0.0)
     }
 
     /// The integral over the slopes in the plane of incidence, with `b` across it.
@@ -117,9 +109,8 @@ impl Facets {
         if low >= high {
             return [0.0; N];
         }
-        let m = self.m;
-        let kinks = [0.0, m, -m, 2.5 * m, -2.5 * m];
-        let kinks = kinks.into_iter().chain(self.kinks(b).into_iter().flatten());
+        let wide = WIDE * self.m;
+        let kinks = [wide, -wide].into_iter().chain(self.kinks(b).into_iter().flatten());
         let mut integrand = |places: &[f64; PLACES]| {
             self.simd.run(Integrand::<N> {
                 facets: self,
@@ -130,25 +121,40 @@ impl Facets {
         integrate(&mut integrand, &Ends::new(low, high, kinks), LOBES, INNER, size)
     }
 
-    /// Where the masking along the plane of incidence has kinks.
+    /// Where the masking along the plane of incidence has kinks: its arguments in Eq. 9 are as large as each other, or as 1.
     fn kinks(&self, b: f64) -> [Option<f64>; 6] {
-        let (sin_i, cos_i) = (self.sin_i, self.cos_i);
-        if sin_i < 1e-8 {
-            return [None; 6];
-        }
-        // theta_s = theta_i where cos ti a^2 - sin ti a + cos ti b^2 = 0.
-        let square = sin_i * sin_i - 4.0 * cos_i * cos_i * b * b;
-        let sum = (square > 0.0).then(|| sin_i + Real::sqrt(square));
-        // 2 cos theta_h cos theta_s = cos theta_d where (cos ti + sin ti a) (3 - a^2 - b^2) = 2 cos ti (1 + a^2 + b^2).
-        let [one, two, three] = cubic(3.0 * cos_i / sin_i, b * b - 3.0, cos_i * (3.0 * b * b - 1.0) / sin_i);
+        let tan_i = self.sin_i / self.cos_i;
+        let cot_i = 1.0 / tan_i;
+        // theta_s < theta_i within the circle a^2 - tan ti a + b^2 = 0.
+        let within = |a: f64| a * a - tan_i * a + b * b < 0.0;
+        let sum = tan_i + Real::sqrt((tan_i * tan_i - 4.0 * b * b).max(0.0));
+        let equal = [0.5 * sum, 2.0 * b * b / sum].map(|a| (a > cot_i).then_some(a));
+        // There 2 cos theta_h cos theta_i = cos theta_d.
+        let of_incidence = within(cot_i).then_some(cot_i);
+        // Elsewhere 2 cos theta_h cos theta_s = cos theta_d, or (1 + tan ti a) (3 - a^2 - b^2) = 2 (1 + a^2 + b^2).
+        let of_scattering = if self.sin_i < 1e-8 {
+            let root = Real::sqrt((1.0 / 3.0 - b * b).max(0.0));
+            [Some(root), Some(-root), None]
+        } else {
+            cubic(3.0 * cot_i, b * b - 3.0, cot_i * (3.0 * b * b - 1.0))
+        };
+        let [one, two, three] = of_scattering.map(|root| root.filter(|&a| !within(a)));
+        [equal[0], equal[1], of_incidence, one, two, three]
+    }
+
+    /// Across the plane of incidence: where the last of these kinks ends, where all three meet, and where that of theta_s = theta_i ends.
+    fn ends_of_kinks(&self) -> [Option<f64>; 3] {
+        let tan_i = self.sin_i / self.cos_i;
+        // The square of b on the kink of scattering is largest where y (y + 3)^2 = 4 tan^2 ti of y = tan ti a.
+        let roots = cubic(6.0, 9.0, -4.0 * tan_i * tan_i);
+        let y = roots.into_iter().flatten().fold(0.0, f64::max);
+        let a = 4.0 * tan_i / ((y + 3.0) * (y + 3.0));
+        let square = ((1.0 + y) * (3.0 - a * a) - 2.0 * (1.0 + a * a)) / (3.0 + y);
+        let meet = 1.0 - 1.0 / (tan_i * tan_i);
         [
-            // G leaves 1 at 2 cos theta_h cos theta_i = cos theta_d.
-            Some(cos_i / sin_i),
-            sum.map(|sum| sum / (2.0 * cos_i)),
-            sum.map(|sum| 2.0 * cos_i * b * b / sum),
-            one,
-            two,
-            three,
+            Some(Real::sqrt(square.max(0.0))),
+            (meet > 0.0).then(|| Real::sqrt(meet)),
+            (0.5 * tan_i > 1.0 / tan_i).then_some(0.5 * tan_i),
         ]
     }
 }
@@ -185,29 +191,26 @@ impl<const N: usize> NullaryFnOnce for Integrand<'_, N> {
 impl Facets {
     #[inline(always)]
     fn integrand(&self, a: Pack<f64, TOGETHER>, b: f64) -> [Pack<f64, TOGETHER>; ALL] {
-        let m2 = self.m * self.m;
         let slope2 = a * a + b * b;
-        let r2 = slope2 / m2;
+        let r2 = slope2 * (1.0 / (self.m * self.m));
         let cos_h = slope2.map(|slope2| 1.0 / (1.0 + slope2).sqrt());
-        let cos_d = (a * self.sin_i).map(|a| self.cos_i + a) * cos_h;
+        // cos theta_d / cos theta_h.
+        let ratio = (a * self.sin_i).map(|a| self.cos_i + a);
+        let cos_d = ratio * cos_h;
         let cos_s = cos_d.zip(cos_h, |cos_d, cos_h| 2.0 * cos_d * cos_h - self.cos_i);
         // Other facets send no light above the horizon.
-        let lit = cos_d.zip(
+        let lit = ratio.zip(
             cos_s,
-            |cos_d, cos_s| if cos_d <= 0.0 || cos_s <= 0.0 { 0.0 } else { 1.0 },
+            |ratio, cos_s| if ratio <= 0.0 || cos_s <= 0.0 { 0.0 } else { 1.0 },
         );
         // For both halves across.
-        let share = r2.map(|r2| -r2).exp() * 2.0 / (PI * self.m * self.m) * cos_d / cos_h;
+        let share = r2.map(|r2| -r2).exp() * (2.0 / (PI * self.m * self.m)) * ratio;
         let least = cos_s.map(|cos_s| Real::min(self.cos_i, cos_s));
-        let masking = (cos_h * 2.0 * least / cos_d).map(|masking| Real::min(masking, 1.0));
+        let masking = (least * 2.0 / ratio).map(|masking| Real::min(masking, 1.0));
         let cos_d = cos_d.map(|cos_d| Real::min(cos_d, 1.0));
-        let [f, d_n, d_kappa] = self.surface.at(cos_d);
-        let d_kappa = match &self.off_zero {
-            None => d_kappa,
-            Some(surface) => surface.at(cos_d)[2],
-        };
-        let (surface, volume) = (share * masking / self.cos_i, share * (cos_s * 4.0));
-        let by_m = f * r2.map(|r2| r2 - 1.0) * 2.0 / self.m;
+        let [f, d_n, d_kappa2] = self.surface.at(cos_d);
+        let (surface, volume) = (share * masking * (1.0 / self.cos_i), share * (cos_s * 4.0));
+        let by_m = f * r2.map(|r2| r2 - 1.0) * (2.0 / self.m);
         let mut lobes = [
             surface * f,
             volume * f,
@@ -215,8 +218,8 @@ impl Facets {
             volume * by_m,
             surface * d_n,
             volume * d_n,
-            surface * d_kappa,
-            volume * d_kappa,
+            surface * d_kappa2,
+            volume * d_kappa2,
         ];
         for lobe in &mut lobes {
             *lobe = lobe.zip(lit, |lobe, lit| if lit > 0.0 { lobe } else { 0.0 });

@@ -56,20 +56,21 @@ impl Crossed<'_> {
             if let Some(last) = last {
                 // The correlation over x is the first row of the step; with a row more it is that of the sum.
                 let [[a, b], [c, d]] = self.step(self.angles[place] - self.angles[last]);
-                for ([sum, slope], &row) in before.iter_mut().zip(self.all.row(last)) {
-                    let value = *sum + row;
-                    (*sum, *slope) = (a * value + b * *slope, c * value + d * *slope);
+                let row = self.all.row(last);
+                for k in 0..self.all.columns {
+                    let [sum, slope] = before[k];
+                    let value = sum + row[k];
+                    before[k] = [a * value + b * slope, c * value + d * slope];
                 }
             }
             last = Some(place);
             let row = self.all.row(place);
-            let mut rest = &mut sums[..];
-            for (i, &x) in row.iter().enumerate() {
-                let (here, after) = rest.split_at_mut(i + 1);
-                for ((sum, &y), before_y) in here.iter_mut().zip(row).zip(before.iter()) {
-                    *sum = *sum + (before_y[0] * x + before[i][0] * y);
+            let mut place = 0;
+            for i in 0..self.all.columns {
+                for k in 0..=i {
+                    sums[place] = sums[place] + (before[k][0] * row[i] + before[i][0] * row[k]);
+                    place += 1;
                 }
-                rest = after;
             }
         }
     }

@@ -67,20 +67,20 @@ impl NullaryFnOnce for Filter<'_> {
                 ln_determinant = ln_determinant + total.ln();
                 let per_total = total.map(|total| 1.0 / total);
                 let gain = [variance[0] * per_total, variance[1] * per_total];
-                for (k, ([value, slope], fresh)) in state.iter_mut().zip(&mut fresh).enumerate() {
+                // Iterators side by side would be calls here, a million for a scan.
+                for k in 0..=columns {
                     let measured = if k == columns { self.all.values[place] } else { row[k] };
-                    let (at, by) = (a * *value + b * *slope, c * *value + d * *slope);
-                    *fresh = Lanes::splat(measured) - at;
-                    (*value, *slope) = (at + gain[0] * *fresh, by + gain[1] * *fresh);
+                    let [value, slope] = state[k];
+                    let (at, by) = (a * value + b * slope, c * value + d * slope);
+                    fresh[k] = Lanes::splat(measured) - at;
+                    state[k] = [at + gain[0] * fresh[k], by + gain[1] * fresh[k]];
                 }
-                let mut rest = &mut sums[..];
-                for (i, &x) in fresh.iter().enumerate() {
-                    let (here, after) = rest.split_at_mut(i + 1);
-                    let x = x * per_total;
-                    for (sum, &y) in here.iter_mut().zip(&fresh) {
-                        *sum = *sum + x * y;
+                for i in 0..=columns {
+                    let x = fresh[i] * per_total;
+                    let sums = &mut sums[at(i, 0)..=at(i, i)];
+                    for j in 0..=i {
+                        sums[j] = sums[j] + x * fresh[j];
                     }
-                    rest = after;
                 }
                 known[0] = known[0] + gain[0] * variance[0];
                 known[1] = known[1] + gain[0] * variance[1];

@@ -103,7 +103,7 @@ pub(crate) fn run<R: Real, const P: usize>(
                 None => Ok(search::paper_fit(single(scene), &bounds, options.seed, i as u64, &lm)),
                 Some(k) => Ok(lm::fit(single(scene), &bounds, known[k], &lm)),
             })?;
-            search::paper(single(scene), &bounds, fits.into_iter(), &lm)
+            search::paper(single(scene), &bounds, fits, &lm)
         }
     };
     if options.until.is_over() {

@@ -194,3 +194,19 @@ fn a_search_that_is_not_wanted_ends() {
     assert_eq!(joint(&OVER), Err((2, FitError::Interrupted)));
     assert!(joint(&GOES_ON).is_ok());
 }
+
+#[test]
+fn the_first_error_in_order_ends_the_work() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use brdfit::engine::threads::try_each;
+
+    assert_eq!(try_each(100, &|k| Ok::<_, usize>(k)), Ok((0..100).collect()));
+    let made = AtomicUsize::new(0);
+    let fails = |k: usize| {
+        made.fetch_add(1, Ordering::Relaxed);
+        if k % 1000 == 700 { Err(k) } else { Ok(k) }
+    };
+    assert_eq!(try_each(1_000_000, &fails), Err(700));
+    assert!(made.into_inner() < 900_000);
+}

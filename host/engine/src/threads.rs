@@ -78,20 +78,3 @@ fn places<S>(count: usize) -> Vec<OnceLock<S>> {
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(work);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_first_error_in_order_ends_the_work() {
-        assert_eq!(try_each(100, &|k| Ok::<_, usize>(k)), Ok((0..100).collect()));
-        let made = AtomicUsize::new(0);
-        let fails = |k: usize| {
-            made.fetch_add(1, Ordering::Relaxed);
-            if k % 1000 == 700 { Err(k) } else { Ok(k) }
-        };
-        assert_eq!(try_each(1_000_000, &fails), Err(700));
-        assert!(made.into_inner() < 900_000);
-    }
-}
